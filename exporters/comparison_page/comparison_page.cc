@@ -10,9 +10,20 @@
 namespace velamap {
 namespace {
 
-std::string VtsName(const std::string& shape_name, bool is_series, std::size_t field_idx) {
+// The number of a part among those with lines, from 1. A part whose surface fails has no field, so
+// the place of a field among the others does not tell its part.
+int NumberOfPart(const std::string& name, const Layout& layout) {
+  int number = 0;
+  for (const LayoutPart& part : layout.parts) {
+    if (!part.horizontal.empty()) ++number;
+    if (part.name == name) break;
+  }
+  return number;
+}
+
+std::string VtsName(const std::string& shape_name, bool is_series, int part_number) {
   std::string name = is_series ? "deflection_" + shape_name : "deflection";
-  if (field_idx > 0) name += fmt::format("_part{}", field_idx + 1);
+  if (part_number > 1) name += fmt::format("_part{}", part_number);
   return name + ".vts";
 }
 
@@ -27,11 +38,12 @@ void WriteComparisonFiles(const ComparisonPageInput& input, const std::filesyste
   std::vector<NamedDeflections> deflections;
   for (const Comparison& comparison : input.series) {
     const std::vector<DeflectionField>& fields = comparison.deflections.fields;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
+    for (const DeflectionField& field : fields) {
       const std::string name =
-          fmt::format("{} of {} from {}", fields[i].part, comparison.name, input.reference_name);
-      WriteFile(folder / VtsName(comparison.name, input.series.size() > 1, i),
-                [&](std::ostream& out) { WriteDeflectionVts(fields[i], name, out); });
+          fmt::format("{} of {} from {}", field.part, comparison.name, input.reference_name);
+      const int number = NumberOfPart(field.part, input.layout);
+      WriteFile(folder / VtsName(comparison.name, input.series.size() > 1, number),
+                [&](std::ostream& out) { WriteDeflectionVts(field, name, out); });
     }
     if (!fields.empty()) deflections.push_back({comparison.name, &comparison.deflections});
   }

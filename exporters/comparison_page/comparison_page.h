@@ -47,8 +47,8 @@ void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out);
 std::string ComparisonJson(const ComparisonPageInput& input);
 
 // Writes the files of the folder: comparison.html and, with deflections, deflection.csv and
-// deflection.vts. In a series, the latter have the names of the shapes in theirs, as in
-// deflection_trim2.vts; a second part with lines has deflection_part2.vts.
+// deflection.vts. In a series, deflection.csv holds all shapes, and each shape has its own VTS
+// file, such as deflection_trim2.vts. The second part with lines is in deflection_part2.vts.
 void WriteComparisonFiles(const ComparisonPageInput& input, const std::filesystem::path& folder);
 
 }  // namespace velamap

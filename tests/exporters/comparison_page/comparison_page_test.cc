@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -14,6 +15,7 @@
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/comparison_page/comparison_words.h"
 #include "tests/exporters/compare/example_comparison.h"
+#include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
@@ -235,6 +237,20 @@ TEST(ComparisonPage, IsOneFileWithoutScriptsFromNames) {
   std::ostringstream again;
   WriteComparisonPage(input, again);
   EXPECT_EQ(again.str(), page);
+}
+
+TEST(ComparisonFiles, APartKeepsItsNumberWhereAnotherHasNoSurface) {
+  PageExample example;
+  example.layout = WithJib(BoatLayout());
+  example.reference = WithJib(BoatShape(0.001));
+  example.Add("both", example.reference);
+  example.Add("jib", Without(IdsOf("sail"), example.reference));
+  const TempDir dir;
+  WriteComparisonFiles(example.Input(), dir.path());
+  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_both.vts"));
+  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_both_part2.vts"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "deflection_jib.vts"));
+  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_jib_part2.vts"));
 }
 
 TEST(ComparisonSeries, FiguresNameTheirShape) {
