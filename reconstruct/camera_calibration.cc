@@ -170,7 +170,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
     calibration.views.push_back({views[idx]});
   }
   const std::vector<DatabaseImage> used = ChosenImages(images, chosen);
-  LogInfo("{} of {} pictures with markers are chosen", used.size(), images.size());
+  LogInfo("{} of {} pictures that show the board are chosen", used.size(), images.size());
   // Takes all images and not only the selected ones, because the velocity of a corner follows from
   // the neighbouring frames.
   const CornerErrors corner_errors = CornerErrorsOf(images, formation);

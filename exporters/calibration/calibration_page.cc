@@ -117,8 +117,8 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   if (name == "BOARD") return EscapeForMarkup("The board is " + DescribeBoard(calibration.board));
   if (name == "VIEWS_CAPTION") {
     return fmt::format(
-        "{} of the {} pictures that show markers were used; {} of their corners "
-        "were left out as outliers.",
+        "{} of the {} pictures that show the board were used; {} of their corners were left out "
+        "as outliers.",
         calibration.UsedViews().size(), calibration.num_images, calibration.num_outliers);
   }
   if (name == "VIEWS") return Views(calibration);

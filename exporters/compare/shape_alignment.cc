@@ -54,7 +54,7 @@ Choice ChooseAutomatically(const MarkerShape& shape, const MarkerShape& referenc
     return FindWholeMarker(shape, id) != nullptr && FindWholeMarker(reference, id) != nullptr;
   });
   if (num_common < kMinAutomaticMarkers) {
-    choice.note = fmt::format("reference part '{}' has {} marker{} whole in both, {} are needed",
+    choice.note = fmt::format("reference part '{}' has {} marker{} whole in both; {} are needed",
                               *layout.reference_part, num_common, num_common == 1 ? "" : "s",
                               kMinAutomaticMarkers);
     return choice;
@@ -98,7 +98,7 @@ Choice Choose(const MarkerShape& shape, const MarkerShape& reference, const Layo
 void CheckCorners(const CommonCorners& corners, const std::string& what) {
   if (corners.ids.size() < kMinCorners) {
     throw DataError(
-        fmt::format("the shape and its reference have {} marker corners in common{}, an alignment "
+        fmt::format("the shape and its reference have {} marker corners in common{}; an alignment "
                     "needs {}; check that both have the same layout",
                     corners.ids.size(), what, kMinCorners));
   }

@@ -91,7 +91,7 @@ void CheckMeshFile(const fs::path& path) {
   }
   if (FileSize(path) > kMaxMeshFileSize) {
     throw InputError(
-        fmt::format("{}: has {} bytes; files of at most {} are read, export a coarser "
+        fmt::format("{}: has {} bytes; files of at most {} are read; export a coarser "
                     "mesh",
                     path.string(), FileSize(path), kMaxMeshFileSize));
   }
@@ -109,7 +109,7 @@ TriangleMesh ParseMesh(const fs::path& path, const MeshReadOptions& options) {
   const std::size_t num_elements = std::max(mesh.vertices_m.size(), mesh.triangles.size());
   if (num_elements > kMaxMeshElements) {
     throw InputError(fmt::format(
-        "{}: has {} vertices and {} triangles; at most {} of each are read, export a coarser mesh",
+        "{}: has {} vertices and {} triangles; at most {} of each are read; export a coarser mesh",
         path.string(), mesh.vertices_m.size(), mesh.triangles.size(), kMaxMeshElements));
   }
   if (!HasArea(mesh)) {

@@ -70,7 +70,7 @@ FrameAttempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   }
   const std::string& part = *layout.reference_part;
   if (ids.size() < 2) {
-    return {std::nullopt, fmt::format("part '{}' has {} whole marker{}, two are needed", part,
+    return {std::nullopt, fmt::format("part '{}' has {} whole marker{}; two are needed", part,
                                       ids.size(), ids.size() == 1 ? "" : "s")};
   }
   const auto axes = FitPartAxes(shape, ids);

@@ -38,14 +38,14 @@ std::string WhatDatumLacks(const std::vector<KnownPoint>& points) {
         kAxisNames[known], open[0], open[1], kAxisNames[known]);
   }
   if (num_points < kMinPoints) {
-    return fmt::format("{} point{} given, three are needed", num_points,
+    return fmt::format("{} point{} given; three are needed", num_points,
                        num_points == 1 ? " is" : "s are");
   }
   if (!open.empty()) {
     return fmt::format("none has {}, which leaves a shift along {} open", open[0], open[0]);
   }
   if (num_coordinates < kMinCoordinates) {
-    return fmt::format("{} coordinates are given, six are needed", num_coordinates);
+    return fmt::format("{} coordinates are given; six are needed", num_coordinates);
   }
   return "";
 }

@@ -227,7 +227,7 @@ void DropUnsupported(GlobalRegistration* global) {
           global->NumFits(idx) >= min_num_frames) {
         continue;
       }
-      global->Drop(idx, fmt::format("seen in {} registered frames, {} are needed",
+      global->Drop(idx, fmt::format("seen in {} registered frames; {} are needed",
                                     global->NumFits(idx), min_num_frames));
       changed = true;
     }
@@ -236,7 +236,7 @@ void DropUnsupported(GlobalRegistration* global) {
           global->NumFitsInFrame(idx) >= global->options.min_num_inliers) {
         continue;
       }
-      global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images, {} are "
+      global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images; {} are "
                                         "needed",
                                         global->NumFitsInFrame(idx),
                                         global->problem.Frame(idx).observation_idxs.size(),

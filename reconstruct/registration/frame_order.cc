@@ -45,7 +45,7 @@ int FindCentralFrame(const std::vector<const DatabaseImage*>& images,
       continue;
     }
     if (static_cast<int>(frame.markers.size()) < options.min_num_inliers) {
-      fail("holds " + std::to_string(frame.markers.size()) + " markers, " +
+      fail("holds " + std::to_string(frame.markers.size()) + " markers; " +
            std::to_string(options.min_num_inliers) + " are needed");
     }
     return static_cast<int>(idx);

@@ -17,7 +17,7 @@ int Registration::NumRegistered() const {
 void CheckEnoughImages(std::size_t num_images, std::size_t needed) {
   if (num_images >= needed) return;
   throw DataError(
-      fmt::format("a shape needs at least {} with markers, the database has {}; take pictures from "
+      fmt::format("a shape needs at least {} with markers; the database has {}; take pictures from "
                   "several positions",
                   needed == 1 ? "one image" : "two images", num_images));
 }
@@ -25,7 +25,7 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed) {
 void LeaveOut(int num_shared, int num_markers, int needed, RegisteredFrame* frame) {
   if (num_shared < needed) {
     frame->reason =
-        fmt::format("shares {} of its {} markers with the registered images, {} are needed",
+        fmt::format("shares {} of its {} markers with the registered images; {} are needed",
                     num_shared, num_markers, needed);
     return;
   }

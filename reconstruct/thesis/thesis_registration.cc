@@ -59,7 +59,7 @@ void DropRareMarkers(int min_num_frames, Registration* registration) {
     if (num_frames >= min_num_frames) continue;
     registration->dropped_markers.push_back({marker_id, num_frames,
                                              "seen in " + std::to_string(num_frames) +
-                                                 " registered frames, " +
+                                                 " registered frames; " +
                                                  std::to_string(min_num_frames) + " are needed"});
     registration->shape.erase(marker_id);
   }

@@ -113,7 +113,7 @@ std::vector<BadInput> KnownPoints() {
            points({"at: 0, z: 1e200, sigma: 0.002"})},
           {"FrameOfTooFewKnownPoints", call, 2, "frame: the frame of the known points needs more",
            points({zero, one}, "frame: known_points\n")},
-          {"WishForTooFewKnownPoints", wish, 2, "2 points are given, three are needed",
+          {"WishForTooFewKnownPoints", wish, 2, "2 points are given; three are needed",
            points({zero, one})},
           {"WishForLevels", wish, 2, "they have z alone",
            points({"at: 0, z: 0, sigma: 0.002", "at: 1, z: 0, sigma: 0.002",

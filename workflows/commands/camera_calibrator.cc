@@ -109,8 +109,8 @@ void Validate(CameraCalibratorCommandOptions* options) {
 void Print(const CameraCalibration& calibration, std::ostream& out) {
   PrintVerdict(JudgeCalibration(calibration), out);
   WriteFormatted(out, "camera: {}\n", DescribeCamera(calibration.camera));
-  WriteFormatted(out, "views: {} of {} pictures with markers\n", calibration.UsedViews().size(),
-                 calibration.num_images);
+  WriteFormatted(out, "views: {} of {} pictures that show the board\n",
+                 calibration.UsedViews().size(), calibration.num_images);
   WriteFormatted(out, "reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
                  calibration.error_px.rms, calibration.error_px.median, calibration.error_px.max);
   WriteFormatted(out, "outliers_removed: {} of {} corners\n", calibration.num_outliers,

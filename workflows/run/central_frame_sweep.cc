@@ -146,7 +146,7 @@ class Sweep {
   void CheckMarkers(const DatabaseImage& image) const {
     const int num_needed = options_.registration.min_num_inliers;
     if (static_cast<int>(image.detections.markers.size()) >= num_needed) return;
-    throw DataError(fmt::format("holds {} markers, {} are needed", image.detections.markers.size(),
+    throw DataError(fmt::format("holds {} markers; {} are needed", image.detections.markers.size(),
                                 num_needed));
   }
 

@@ -54,6 +54,7 @@ TEST(CalibrationPage, SaysTheVerdictFirstAndEverythingOnce) {
   const std::string page = Page(GoodCalibration());
   EXPECT_THAT(page, AllOf(HasSubstr("Good: use the camera file."), HasSubstr("Nothing is missing."),
                           HasSubstr("SIMPLE_RADIAL: taken"), HasSubstr("focal length, px"),
+                          HasSubstr("12 of the 12 pictures that show the board were used"),
                           HasSubstr("</html>"), Not(HasSubstr("{{"))));
   EXPECT_LT(page.find("id=\"verdict\""), page.find("id=\"camera_title\""));
 }

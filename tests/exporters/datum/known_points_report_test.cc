@@ -43,7 +43,7 @@ TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
   layout_.known_points.resize(2);
   ExpectThrows<InputError>(
       [&] { CheckFrameChoice(choice, layout_); },
-      {"--frame: the frame 'known_points'", "2 points are given, three are needed"});
+      {"--frame: the frame 'known_points'", "2 points are given; three are needed"});
 }
 
 TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
@@ -52,7 +52,7 @@ TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
   const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, FrameOfKnownPoints(Fit()));
   EXPECT_EQ(frame.kind, FrameKind::kCamera);
   ASSERT_FALSE(frame.reasons.empty());
-  EXPECT_EQ(frame.reasons[0], "not by known_points: 2 points are given, three are needed");
+  EXPECT_EQ(frame.reasons[0], "not by known_points: 2 points are given; three are needed");
 }
 
 TEST_F(KnownPoints, MetricsHaveARowOfEachPoint) {

@@ -232,7 +232,7 @@ TEST_F(KnownPoints, WhatIsMissingIsSaid) {
   EXPECT_EQ(reason(), "the known points leave a turn about z open");
   layout_.known_points.clear();
   AddCenters(2, 0.0);
-  EXPECT_EQ(reason(), "2 points are given, three are needed");
+  EXPECT_EQ(reason(), "2 points are given; three are needed");
   Add(3, 0, 0.0, "z");
   // A level is of little use where the turn about the line of the two leaves it as it is.
   EXPECT_THAT(reason(), AnyOf(HasSubstr("fit in two places"), HasSubstr("leave a turn about the")));

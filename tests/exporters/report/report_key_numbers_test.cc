@@ -89,7 +89,7 @@ TEST_F(ReportKeyNumbers, AKnownPointThatFailsIsRed) {
   for (const int id : {1, 2, 3}) {
     fit.points.push_back({KnownPoint{id, 0, {}, 0.002, false}, PointState::kUsed});
   }
-  fit.reason = "2 points are given, three are needed";
+  fit.reason = "2 points are given; three are needed";
   EXPECT_EQ(status(), ReportStatus::kCheck);
   EXPECT_EQ(FindIn(input, KeyNumberKind::kKnownPoints)->value, "no frame: " + fit.reason);
   fit.is_contradicted = true;

@@ -225,7 +225,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongKnownPoint) {
       "known_points:\n  - {at: 1, x: 1, y: 0, z: 0, sigma: 0.1}\n"
       "  - {at: 2, x: 1, y: 0, z: 0, sigma: 0.1}\nframe: known_points\n",
       ":6: frame: the frame of the known points needs more of them (key 'known_points'): "
-      "2 points are given, three are needed");
+      "2 points are given; three are needed");
 }
 
 TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {

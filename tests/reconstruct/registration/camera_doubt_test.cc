@@ -43,7 +43,7 @@ TEST(CameraDoubt, FewMarkersCanBeFalseOnes) {
 TEST(CameraDoubt, FramesThatShareTooFewMarkersContradictNothing) {
   EXPECT_THAT(CameraDoubt(RegistrationOf(50, 3)), IsEmpty());
   EXPECT_THAT(RegistrationOf(1, 3).frames.front().reason,
-              HasSubstr("shares 3 of its 12 markers with the registered images, 4 are needed"));
+              HasSubstr("shares 3 of its 12 markers with the registered images; 4 are needed"));
 }
 
 TEST(CheckEnoughImages, NamesTheNumberThatIsNeeded) {
