@@ -16,7 +16,7 @@
 namespace velamap {
 namespace {
 
-std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
+std::string TableRow(const std::vector<std::string>& cells, const char* tag = "td") {
   std::string row = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     row += fmt::format("<{0}{1}>{2}</{0}>", tag, i == 0 ? " class=\"text\"" : "",
@@ -25,7 +25,7 @@ std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
   return row + "</tr>";
 }
 
-std::string Items(const std::vector<std::string>& texts) {
+std::string BulletList(const std::vector<std::string>& texts) {
   std::string items;
   for (const std::string& text : texts) items += "<li>" + EscapeForMarkup(text) + "</li>";
   return "<ul>" + items + "</ul>";
@@ -58,40 +58,41 @@ std::vector<std::string> ParameterNames(const Camera& camera) {
 
 std::string ParameterTable(const EstimatedCamera& found) {
   const std::vector<std::string> names = ParameterNames(found.camera);
-  std::string rows = Row({CameraModelName(found.camera.model), "value", "sigma"}, "th");
+  std::string rows = TableRow({CameraModelName(found.camera.model), "value", "sigma"}, "th");
   for (std::size_t i = 0; i < found.camera.params.size(); ++i) {
     const bool is_px = names[i].find("px") != std::string::npos;
-    rows += Row({names[i], fmt::format("{:.{}f}", found.camera.params[i], is_px ? 2 : 6),
-                 fmt::format("{:.{}f}", found.sigmas[i], is_px ? 2 : 6)});
+    rows += TableRow({names[i], fmt::format("{:.{}f}", found.camera.params[i], is_px ? 2 : 6),
+                      fmt::format("{:.{}f}", found.sigmas[i], is_px ? 2 : 6)});
   }
   return rows;
 }
 
-std::string Models(const CameraCalibration& calibration) {
-  std::string rows = Row({"model", "parameters", "unseen, px", "all, px"}, "th");
+std::string ModelTable(const CameraCalibration& calibration) {
+  std::string rows = TableRow({"model", "parameters", "unseen, px", "all, px"}, "th");
   for (const CameraModelScore& score : calibration.scores) {
     const bool is_taken = score.model == calibration.camera.camera.model;
-    rows += Row({CameraModelName(score.model) + (is_taken ? ": taken" : "") +
-                     (score.is_folded ? ": folds over inside the picture" : ""),
-                 fmt::format("{}", NumCameraParams(score.model)),
-                 fmt::format("{:.4f}", score.unseen_error_px),
-                 fmt::format("{:.4f}", score.seen_error_px)});
+    rows += TableRow({CameraModelName(score.model) + (is_taken ? ": taken" : "") +
+                          (score.is_folded ? ": folds over inside the picture" : ""),
+                      fmt::format("{}", NumCameraParams(score.model)),
+                      fmt::format("{:.4f}", score.unseen_error_px),
+                      fmt::format("{:.4f}", score.seen_error_px)});
   }
   return rows;
 }
 
-std::string Views(const CameraCalibration& calibration) {
-  std::string rows = Row({"picture", "corners", "tilt, degrees", "error, px"}, "th");
+std::string ViewTable(const CameraCalibration& calibration) {
+  std::string rows = TableRow({"picture", "corners", "tilt, degrees", "error, px"}, "th");
   for (const CalibrationView& view : calibration.views) {
-    rows += Row({view.view.image_name, fmt::format("{}", view.view.corners_in_image_px.size()),
-                 fmt::format("{:.0f}", view.view.tilt_deg),
-                 view.is_used ? fmt::format("{:.3f}", view.error_px) : std::string("left out")});
+    rows +=
+        TableRow({view.view.image_name, fmt::format("{}", view.view.corners_in_image_px.size()),
+                  fmt::format("{:.0f}", view.view.tilt_deg),
+                  view.is_used ? fmt::format("{:.3f}", view.error_px) : std::string("left out")});
   }
   return rows;
 }
 
-std::string Part(std::string_view name, const CameraCalibration& calibration,
-                 const std::string& board, const ResidualDrawing& residuals) {
+std::string PlaceholderHtml(std::string_view name, const CameraCalibration& calibration,
+                            const std::string& board, const ResidualDrawing& residuals) {
   const Camera& camera = calibration.camera.camera;
   if (name == "STYLE") return std::string(kReportStyle);
   if (name == "ORIGIN") {
@@ -101,7 +102,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   if (name == "PARAMETERS") return ParameterTable(calibration.camera);
   if (name == "MORE") {
     const std::vector<std::string> advice = AdvisedViews(calibration);
-    return advice.empty() ? "<p>Nothing is missing.</p>" : Items(advice);
+    return advice.empty() ? "<p>Nothing is missing.</p>" : BulletList(advice);
   }
   if (name == "COVERAGE") return DrawCoverage(calibration);
   if (name == "RESIDUALS") return residuals.svg;
@@ -113,7 +114,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
         "model does not describe.",
         calibration.error_px.rms, residuals.magnification);
   }
-  if (name == "MODELS") return Models(calibration);
+  if (name == "MODELS") return ModelTable(calibration);
   if (name == "BOARD") return EscapeForMarkup("The board is " + DescribeBoard(calibration.board));
   if (name == "VIEWS_CAPTION") {
     return fmt::format(
@@ -121,8 +122,8 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
         "as outliers.",
         calibration.UsedViews().size(), calibration.num_images, calibration.num_outliers);
   }
-  if (name == "VIEWS") return Views(calibration);
-  throw std::logic_error("the calibration's page names an unknown part: " + std::string(name));
+  if (name == "VIEWS") return ViewTable(calibration);
+  throw std::logic_error("calibration.html has an unknown placeholder: " + std::string(name));
 }
 
 }  // namespace
@@ -132,7 +133,8 @@ void WriteCalibrationPage(const CameraCalibration& calibration, const std::strin
   const ResidualDrawing residuals = DrawResiduals(calibration);
   WriteHtmlPage(
       kCalibrationPage,
-      [&](std::string_view name) { return Part(name, calibration, board, residuals); }, out);
+      [&](std::string_view name) { return PlaceholderHtml(name, calibration, board, residuals); },
+      out);
 }
 
 }  // namespace velamap

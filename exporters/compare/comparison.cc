@@ -93,7 +93,7 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
   return comparison;
 }
 
-MetricsReport MakeReport(const std::vector<Comparison>& series) {
+MetricsReport MakeComparisonReport(const std::vector<Comparison>& series) {
   if (series.size() == 1) return ReportOf(series.front());
   MetricsReport together;
   together.tables.push_back({"shapes", true, {}});

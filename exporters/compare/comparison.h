@@ -41,9 +41,10 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const MeshDistance& reference, const Layout& layout,
                    const ComparisonOptions& options);
 
-// The figures of all shapes, without rounding errors. For several shapes, the table `shapes` has a
-// row for each, and every row of the other tables names its shape.
-MetricsReport MakeReport(const std::vector<Comparison>& series);
+// The figures of all shapes. Values below 1e-9 become 0, so that rounding errors do not show. For
+// several shapes, the table `shapes` has a row for each, and every row of the other tables names
+// its shape.
+MetricsReport MakeComparisonReport(const std::vector<Comparison>& series);
 
 // Names shapes by their paths: the file, or the folder that holds a folder `shape` or a shape.csv.
 // Equal names are numbered.

@@ -19,10 +19,10 @@ int NumCoordinates(const DatumPoints& points, const PointSet& set) {
   return count;
 }
 
-// Whether the set determines a pose. `pose` is an approximation of it.
-bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+// Whether the set determines a pose. `known_from_centred` is an approximation of it.
+bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& known_from_centred) {
   return NumCoordinates(points, set) >= kNumPoseParameters &&
-         OpenMotions(points, set, pose).empty();
+         UndeterminedMotions(points, set, known_from_centred).empty();
 }
 
 struct DatumHypothesis {
@@ -35,7 +35,7 @@ class DatumConsensus {
  public:
   struct Model {
     PointSet sample;
-    Rigid3 pose;
+    Rigid3 known_from_centred;
   };
   using Hypothesis = DatumHypothesis;
   static constexpr int kSampleSize = 3;  // a sample has more points if coordinates are missing
@@ -54,7 +54,9 @@ class DatumConsensus {
       }
       std::vector<Model> models;
       for (const DatumPose& pose : FindPoses(points_, sample)) {
-        if (Determines(points_, sample, pose.pose)) models.push_back({sample, pose.pose});
+        if (Determines(points_, sample, pose.known_from_centred)) {
+          models.push_back({sample, pose.known_from_centred});
+        }
       }
       if (!models.empty()) return models;
     }
@@ -63,9 +65,9 @@ class DatumConsensus {
 
   DatumHypothesis Score(const Model& model) const {
     DatumHypothesis hypothesis;
-    hypothesis.agreement.pose = AdjustPose(points_, model.sample, model.pose);
+    hypothesis.agreement.pose = AdjustPose(points_, model.sample, model.known_from_centred);
     hypothesis.agreement.sigmas_off =
-        SigmasAgainst(points_, model.sample, hypothesis.agreement.pose.pose);
+        BaardaStatistics(points_, model.sample, hypothesis.agreement.pose.known_from_centred);
     for (const std::size_t i : candidates_) {
       const double sigmas = hypothesis.agreement.sigmas_off[i];
       hypothesis.cost += std::min(sigmas * sigmas, kMaxDatumSigmas * kMaxDatumSigmas);
@@ -91,8 +93,8 @@ DatumAgreement Settle(const DatumPoints& points, const PointSet& candidates, Poi
   std::set<std::size_t> left_out;
   std::vector<double> sigmas;
   while (set.size() >= DatumConsensus::kSampleSize) {
-    pose = AdjustPose(points, set, pose.pose);
-    sigmas = SigmasAgainst(points, set, pose.pose);
+    pose = AdjustPose(points, set, pose.known_from_centred);
+    sigmas = BaardaStatistics(points, set, pose.known_from_centred);
     const auto worst = std::max_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
       return sigmas[a] < sigmas[b];
     });
@@ -122,15 +124,16 @@ bool IsSupported(const DatumPoints& points, const PointSet& candidates,
   const bool fits = redundancy > 0 || (used == candidates && agreement.pose.squared_sigmas <=
                                                                  kMaxDatumSigmas * kMaxDatumSigmas);
   return fits && 2 * used.size() > candidates.size() &&
-         Determines(points, used, agreement.pose.pose);
+         Determines(points, used, agreement.pose.known_from_centred);
 }
 
 }  // namespace
 
 std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates) {
   DatumAgreement agreement;
-  agreement.pose = AdjustPose(points, candidates, FindPoses(points, candidates).front().pose);
-  agreement.sigmas_off = SigmasAgainst(points, candidates, agreement.pose.pose);
+  agreement.pose =
+      AdjustPose(points, candidates, FindPoses(points, candidates).front().known_from_centred);
+  agreement.sigmas_off = BaardaStatistics(points, candidates, agreement.pose.known_from_centred);
   agreement.used = candidates;
   const bool all_agree = std::all_of(candidates.begin(), candidates.end(), [&](std::size_t i) {
     return agreement.sigmas_off[i] <= kMaxDatumSigmas;

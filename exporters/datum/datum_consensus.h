@@ -9,13 +9,14 @@
 
 namespace velamap {
 
-// A point that is more sigmas (SigmasAgainst()) away from where the others put it contradicts them.
+// A point that is more sigmas (BaardaStatistics()) away from where the others put it contradicts
+// them.
 constexpr double kMaxDatumSigmas = 4.0;
 
 struct DatumAgreement {
   PointSet used;
   DatumPose pose;                  // adjusted to the used points
-  std::vector<double> sigmas_off;  // SigmasAgainst() of all points
+  std::vector<double> sigmas_off;  // BaardaStatistics() of all points
 };
 
 // Searches (RANSAC) for the largest subset of `candidates` whose points agree and determine the

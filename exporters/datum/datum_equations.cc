@@ -12,13 +12,14 @@ PointSet AllOf(const DatumPoints& points) {
   return all;
 }
 
-DatumEquations Linearize(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
+                         const Rigid3& known_from_centred) {
   const auto max_rows = static_cast<Eigen::Index>(3 * set.size());
   DatumEquations equations{{0},
                            Eigen::VectorXd(max_rows),
                            decltype(DatumEquations::by_pose)(max_rows, 6),
                            Eigen::VectorXd(max_rows)};
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  const Eigen::Matrix3d rotation = known_from_centred.rotation.toRotationMatrix();
   Eigen::Index row = 0;
   for (const std::size_t i : set) {
     const DatumPoint& point = points.points[i];
@@ -27,7 +28,7 @@ DatumEquations Linearize(const DatumPoints& points, const PointSet& set, const R
     for (int axis = 0; axis < 3; ++axis) {
       const std::optional<double>& known_m = point.known_m[static_cast<std::size_t>(axis)];
       if (!known_m) continue;
-      equations.residuals_m[row] = turned[axis] + (pose.translation[axis] - *known_m);
+      equations.residuals_m[row] = turned[axis] + (known_from_centred.translation[axis] - *known_m);
       equations.by_pose.row(row) << by_turn.row(axis), Eigen::RowVector3d::Unit(axis);
       equations.by_scale_m[row] = turned[axis];
       ++row;
@@ -41,8 +42,8 @@ DatumEquations Linearize(const DatumPoints& points, const PointSet& set, const R
 }
 
 Eigen::MatrixXd ResidualCovariance(const DatumPoints& points, const PointSet& set,
-                                   const Eigen::Quaterniond& known_from_shape) {
-  const Eigen::Matrix3d rotation = known_from_shape.toRotationMatrix();
+                                   const Eigen::Quaterniond& known_from_centred) {
+  const Eigen::Matrix3d rotation = known_from_centred.toRotationMatrix();
   const auto num_rows = static_cast<Eigen::Index>(3 * set.size());
   Eigen::MatrixXd covariance(num_rows, num_rows);
   std::vector<Eigen::Index> given;

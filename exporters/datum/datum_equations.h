@@ -1,6 +1,7 @@
 // Points of the shape with known coordinates in another frame, and the linearized equations for the
-// pose known_from_shape. Each given coordinate gives one residual, the coordinate of
-// known_from_shape * x minus the known one.
+// pose known_from_centred, which maps DatumPoint::x_m, relative to the centre of the points, to
+// that frame. Each given coordinate gives one residual, the coordinate of known_from_centred * x_m
+// minus the known one.
 
 #pragma once
 
@@ -44,12 +45,12 @@ struct DatumEquations {
   Eigen::VectorXd by_scale_m;
 };
 
-// `pose` transforms DatumPoint::x_m to the known frame.
-DatumEquations Linearize(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
+DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
+                         const Rigid3& known_from_centred);
 
 // The covariance of the residuals, m^2, due to the errors of the known coordinates and of the
 // shape.
 Eigen::MatrixXd ResidualCovariance(const DatumPoints& points, const PointSet& set,
-                                   const Eigen::Quaterniond& known_from_shape);
+                                   const Eigen::Quaterniond& known_from_centred);
 
 }  // namespace velamap

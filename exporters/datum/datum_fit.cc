@@ -38,7 +38,7 @@ std::vector<std::string> DirectionNames(const Eigen::Matrix3Xd& directions) {
 }
 
 // Converts a chi-squared value of `num_coordinates` degrees of freedom to the number of sigmas that
-// SigmasAgainst() returns.
+// BaardaStatistics() returns.
 double InSigmas(double squared, int num_coordinates) {
   // Square roots of the 99.73 % quantiles of chi-squared for 1, 2 and 3 degrees of freedom.
   constexpr double kThreeSigmas[] = {3.0, 3.4393, 3.7625};
@@ -67,7 +67,7 @@ SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
   return system;
 }
 
-// SigmasAgainst() for the points of the set: the residuals of each point after the adjustment,
+// BaardaStatistics() for the points of the set: the residuals of each point after the adjustment,
 // normalized by their covariance (Baarda's test).
 std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen::Index>& begins) {
   constexpr double kMinRedundancy = 1e-6;  // smaller values are rounding errors
@@ -99,18 +99,18 @@ std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen
 
 }  // namespace
 
-std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set,
-                                  const Rigid3& pose) {
+std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& set,
+                                     const Rigid3& known_from_centred) {
   const PointSet all = AllOf(points);
-  const DatumEquations equations = Linearize(points, all, pose);
-  const Eigen::MatrixXd covariance = ResidualCovariance(points, all, pose.rotation);
+  const DatumEquations equations = Linearize(points, all, known_from_centred);
+  const Eigen::MatrixXd covariance = ResidualCovariance(points, all, known_from_centred.rotation);
   std::vector<Eigen::Index> rows;
   for (const std::size_t i : set) {
     for (Eigen::Index row = equations.begins[i]; row < equations.begins[i + 1]; ++row) {
       rows.push_back(row);
     }
   }
-  const DatumEquations of_set = Linearize(points, set, pose);
+  const DatumEquations of_set = Linearize(points, set, known_from_centred);
   const SetSystem system = MakeSystem(points, of_set, covariance(rows, rows));
   const std::vector<double> sigmas_of_set = SigmasOfSet(system, of_set.begins);
   // The derivative of the adjusted pose with respect to the residuals of the set, with the opposite
@@ -138,9 +138,10 @@ std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set
   return sigmas;
 }
 
-std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
-  const SetSystem system = MakeSystem(points, Linearize(points, set, pose),
-                                      ResidualCovariance(points, set, pose.rotation));
+std::string UndeterminedMotions(const DatumPoints& points, const PointSet& set,
+                                const Rigid3& known_from_centred) {
+  const SetSystem system = MakeSystem(points, Linearize(points, set, known_from_centred),
+                                      ResidualCovariance(points, set, known_from_centred.rotation));
   const SymmetricEigen motions = DecomposeSymmetric(system.pose_covariance);
   const double limit_m2 = std::pow(kMaxOpen * points.radius_m, 2);
   const auto num_open = (motions.values.array() > limit_m2).count();
@@ -164,11 +165,11 @@ std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Ri
 }
 
 std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
-                                               const Rigid3& pose) {
+                                               const Rigid3& known_from_centred) {
   constexpr double kMaxSigma = 0.5;
-  const DatumEquations equations = Linearize(points, set, pose);
+  const DatumEquations equations = Linearize(points, set, known_from_centred);
   const SetSystem system =
-      MakeSystem(points, equations, ResidualCovariance(points, set, pose.rotation));
+      MakeSystem(points, equations, ResidualCovariance(points, set, known_from_centred.rotation));
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
   // The part of the whitened values that a change of the pose cannot compensate.
   const auto without_pose = [&system](const Eigen::VectorXd& values) -> Eigen::VectorXd {

@@ -45,10 +45,10 @@ struct DatumProblem : LeastSquaresProblem<6> {
   DatumProblem(const DatumPoints& all, const PointSet& chosen, Eigen::MatrixXd whitening)
       : points(all), set(chosen), whitener(std::move(whitening)) {}
 
-  void Evaluate(const Rigid3& pose, bool, Equations* equations) const {
+  void Evaluate(const Rigid3& known_from_centred, bool, Equations* equations) const {
     constexpr double kRegularization = 1e-12;
     *equations = {};
-    const DatumEquations linear = Linearize(points, set, pose);
+    const DatumEquations linear = Linearize(points, set, known_from_centred);
     const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
     const Eigen::VectorXd residuals = whitener * linear.residuals_m;
     equations->Add(jacobian, residuals);
@@ -56,20 +56,20 @@ struct DatumProblem : LeastSquaresProblem<6> {
     equations->AddToDiagonal(kRegularization * equations->hessian().trace());
   }
 
-  Rigid3 Plus(const Rigid3& pose, const Step& step) const {
-    return {PlusRotation(pose.rotation, step.head<3>() / points.radius_m),
-            pose.translation + step.tail<3>()};
+  Rigid3 Plus(const Rigid3& known_from_centred, const Step& step) const {
+    return {PlusRotation(known_from_centred.rotation, step.head<3>() / points.radius_m),
+            known_from_centred.translation + step.tail<3>()};
   }
 };
 
-DatumPose Minimize(const DatumProblem& problem, Rigid3 pose) {
+DatumPose Minimize(const DatumProblem& problem, Rigid3 known_from_centred) {
   LeastSquaresOptions options;
   options.max_iterations = 60;
   options.min_step = 1e-12 * problem.points.radius_m;
   DatumProblem::Equations equations;
-  MinimizeSquares(options, problem, &pose, &equations);
-  problem.Evaluate(pose, false, &equations);
-  return {pose, 2 * equations.cost()};
+  MinimizeSquares(options, problem, &known_from_centred, &equations);
+  problem.Evaluate(known_from_centred, false, &equations);
+  return {known_from_centred, 2 * equations.cost()};
 }
 
 // The closed form. It needs three or more points with all coordinates that are not on one line.
@@ -90,7 +90,7 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
 // The pose with the given rotation and the translation that makes the mean residual along each axis
 // zero.
 Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
-  Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
+  Rigid3 known_from_centred{rotation, Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis) {
     double sum = 0.0;
     int count = 0;
@@ -100,9 +100,9 @@ Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quat
       sum += *known - (rotation * points.points[i].x_m)[axis];
       ++count;
     }
-    if (count > 0) pose.translation[axis] = sum / count;
+    if (count > 0) known_from_centred.translation[axis] = sum / count;
   }
-  return pose;
+  return known_from_centred;
 }
 
 }  // namespace
@@ -129,20 +129,22 @@ std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set)
   std::vector<DatumPose> distinct;
   for (const DatumPose& pose : found) {
     const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const DatumPose& other) {
-      return AngularDistance(pose.pose, other.pose) < kSameAngle;
+      return AngularDistance(pose.known_from_centred, other.known_from_centred) < kSameAngle;
     });
     if (is_new) distinct.push_back(pose);
   }
   return distinct;
 }
 
-DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose) {
+DatumPose AdjustPose(const DatumPoints& points, const PointSet& set,
+                     const Rigid3& known_from_centred) {
   constexpr int kNumRounds = 2;  // the covariance hardly changes with the pose
-  DatumPose adjusted{pose, 0.0};
+  DatumPose adjusted{known_from_centred, 0.0};
   for (int round = 0; round < kNumRounds; ++round) {
-    const DatumProblem problem(points, set,
-                               Whitener(ResidualCovariance(points, set, adjusted.pose.rotation)));
-    adjusted = Minimize(problem, adjusted.pose);
+    const DatumProblem problem(
+        points, set,
+        Whitener(ResidualCovariance(points, set, adjusted.known_from_centred.rotation)));
+    adjusted = Minimize(problem, adjusted.known_from_centred);
   }
   return adjusted;
 }

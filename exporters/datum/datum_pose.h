@@ -13,7 +13,7 @@ namespace velamap {
 Eigen::MatrixXd Whitener(const Eigen::MatrixXd& covariance);
 
 struct DatumPose {
-  Rigid3 pose;
+  Rigid3 known_from_centred;    // of DatumPoint::x_m, which is relative to the centre
   double squared_sigmas = 0.0;  // sum of the squared whitened residuals
 };
 
@@ -23,7 +23,9 @@ struct DatumPose {
 // have all coordinates, the closed form replaces the search and gives the only pose.
 std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set);
 
-// The least-squares pose with the joint covariance of all coordinates, starting from `pose`.
-DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose);
+// The least-squares pose with the joint covariance of all coordinates, starting from
+// `known_from_centred`.
+DatumPose AdjustPose(const DatumPoints& points, const PointSet& set,
+                     const Rigid3& known_from_centred);
 
 }  // namespace velamap

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "exporters/datum/datum_consensus.h"
-#include "exporters/datum/present_points.h"
+#include "exporters/datum/known_points_in_shape.h"
 #include "exporters/shape/known_distances.h"
 #include "importer/base/statistics.h"
 
@@ -59,12 +59,13 @@ DatumPoints Mirrored(DatumPoints points) {
 // Whether a different pose fits about as well.
 bool IsAmbiguous(const DatumPoints& points, const DatumAgreement& agreement) {
   constexpr double kOtherAngle = 0.02;  // rad
+  const Rigid3& found = agreement.pose.known_from_centred;
   const double limit = agreement.pose.squared_sigmas + kMaxDatumSigmas * kMaxDatumSigmas;
   for (const DatumPose& start : FindPoses(points, agreement.used)) {
-    if (AngularDistance(start.pose, agreement.pose.pose) < kOtherAngle) continue;
-    const DatumPose other = AdjustPose(points, agreement.used, start.pose);
+    if (AngularDistance(start.known_from_centred, found) < kOtherAngle) continue;
+    const DatumPose other = AdjustPose(points, agreement.used, start.known_from_centred);
     if (other.squared_sigmas < limit &&
-        AngularDistance(other.pose, agreement.pose.pose) > kOtherAngle) {
+        AngularDistance(other.known_from_centred, found) > kOtherAngle) {
       return true;
     }
   }
@@ -81,8 +82,9 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   if (!growth || std::abs(*growth - 1) > kMaxGrowth) return agreement;
   const std::optional<DatumAgreement> grown = FindAgreement(Grown(points, *growth), datum);
   if (!grown || (agreement && grown->used.size() <= agreement->used.size())) return agreement;
-  DatumAgreement rigid{grown->used, AdjustPose(points, grown->used, grown->pose.pose), {}};
-  rigid.sigmas_off = SigmasAgainst(points, rigid.used, rigid.pose.pose);
+  DatumAgreement rigid{
+      grown->used, AdjustPose(points, grown->used, grown->pose.known_from_centred), {}};
+  rigid.sigmas_off = BaardaStatistics(points, rigid.used, rigid.pose.known_from_centred);
   return rigid;
 }
 
@@ -116,7 +118,8 @@ void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
             KnownPointFit* fit) {
   std::string cause = WrongSize(points, datum);
   if (cause.empty()) {
-    const std::string open = OpenMotions(points, datum, FindPoses(points, datum).front().pose);
+    const std::string open =
+        UndeterminedMotions(points, datum, FindPoses(points, datum).front().known_from_centred);
     if (!open.empty()) {
       fit->reason = "the known points leave " + open + " open";
       return;
@@ -133,12 +136,13 @@ void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
 }
 
 // WhatDatumLacks() for the points that are in the shape, with the points that are missing there.
-std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& present) {
+std::string Lack(const std::vector<ComparedPoint>& points, const KnownPointsInShape& present) {
   std::vector<KnownPoint> found;
   std::vector<std::string> missing;
-  for (const std::size_t i : present.idxs) found.push_back(points[i].known);
+  for (const std::size_t i : present.known_idxs) found.push_back(points[i].known);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool is_found = std::binary_search(present.idxs.begin(), present.idxs.end(), i);
+    const bool is_found =
+        std::binary_search(present.known_idxs.begin(), present.known_idxs.end(), i);
     const KnownPoint& known = points[i].known;
     if (!is_found && !known.is_check) missing.push_back(PointName(known.marker_id, known.corner));
   }
@@ -149,12 +153,12 @@ std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& 
 }
 
 // Compares every known point that is in the shape with its coordinates, in the known frame.
-void ComparePoints(const PresentPoints& present, const DatumAgreement& agreement,
+void ComparePoints(const KnownPointsInShape& present, const DatumAgreement& agreement,
                    KnownPointFit* fit) {
-  const Rigid3& pose = agreement.pose.pose;
-  for (std::size_t i = 0; i < present.idxs.size(); ++i) {
-    ComparedPoint& compared = fit->points[present.idxs[i]];
-    const Eigen::Vector3d x_m = pose * present.points.points[i].x_m;
+  const Rigid3& known_from_centred = agreement.pose.known_from_centred;
+  for (std::size_t i = 0; i < present.known_idxs.size(); ++i) {
+    ComparedPoint& compared = fit->points[present.known_idxs[i]];
+    const Eigen::Vector3d x_m = known_from_centred * present.points.points[i].x_m;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto& known_m = compared.known.x_m[axis];
       const auto row = static_cast<Eigen::Index>(axis);
@@ -182,15 +186,16 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   KnownPointFit fit;
   for (const KnownPoint& known : layout.known_points) fit.points.push_back({known});
   if (fit.points.empty()) return fit;
-  const PresentPoints present = CollectPresent(shape, layout.known_points, covariance);
+  const KnownPointsInShape present =
+      CollectKnownPointsInShape(shape, layout.known_points, covariance);
   const DatumPoints& points = present.points;
-  for (const std::size_t i : present.idxs) fit.points[i].state = PointState::kNotCompared;
+  for (const std::size_t i : present.known_idxs) fit.points[i].state = PointState::kNotCompared;
   fit.reason = Lack(fit.points, present);
   if (!fit.reason.empty()) return fit;
-  const std::optional<DatumAgreement> agreement = Agree(points, present.datum);
-  const bool are_mirrored = AreMirrored(points, present.datum, agreement);
+  const std::optional<DatumAgreement> agreement = Agree(points, present.datum_idxs);
+  const bool are_mirrored = AreMirrored(points, present.datum_idxs, agreement);
   if (!agreement || are_mirrored) {
-    Refuse(points, present.datum, are_mirrored, &fit);
+    Refuse(points, present.datum_idxs, are_mirrored, &fit);
     return fit;
   }
   if (IsAmbiguous(points, *agreement)) {
@@ -199,15 +204,17 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
         "sigma if need be";
     return fit;
   }
-  const Rigid3& pose = agreement->pose.pose;
-  fit.known_from_shape = {pose.rotation,
-                          pose.translation - pose.rotation * points.center_in_shape_m};
+  const Rigid3& known_from_centred = agreement->pose.known_from_centred;
+  fit.known_from_shape = {
+      known_from_centred.rotation,
+      known_from_centred.translation - known_from_centred.rotation * points.center_in_shape_m};
   ComparePoints(present, *agreement, &fit);
-  fit.scale_change = EstimateScaleChange(points, agreement->used, pose);
+  fit.scale_change = EstimateScaleChange(points, agreement->used, known_from_centred);
   if (fit.scale_change && covariance == nullptr) {
     fit.scale_change->sigma = std::hypot(fit.scale_change->sigma, scale_sigma);
   }
-  const auto redundancy = Linearize(points, agreement->used, pose).residuals_m.size() - 6;
+  const auto redundancy =
+      Linearize(points, agreement->used, known_from_centred).residuals_m.size() - 6;
   if (redundancy > 0) {
     fit.residual_in_sigmas =
         std::sqrt(agreement->pose.squared_sigmas / static_cast<double>(redundancy));

@@ -29,7 +29,7 @@ struct ComparedPoint {
   PointState state = PointState::kNotInShape;
   // Shape minus known coordinates in the known frame, m; 0 along axes without a known coordinate.
   Eigen::Vector3d difference_m = Eigen::Vector3d::Zero();
-  double sigmas_off = 0.0;  // see SigmasAgainst()
+  double sigmas_off = 0.0;  // see BaardaStatistics()
 };
 
 struct KnownPointFit {

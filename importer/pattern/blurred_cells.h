@@ -31,7 +31,7 @@ static_assert(kMaxRingedCells <= 32);
 // The weights of the blurred columns (or rows) at a group of places: for each place those of the
 // cells first ... first + count - 1, counted with the rings, and their derivatives with respect to
 // the place and the blur.
-struct Shares {
+struct CellWeights {
   int count = 0;
   Ints first;
   int least_first = 0, largest_first = 0;  // of the places
@@ -45,8 +45,10 @@ struct OuterEdges {
   Floats outline_shift{};                       // of the square's outline, outwards
 };
 
-inline void ComputeShares(Floats x, Floats blur, int num_cells, const OuterEdges& outer,
-                          Shares* shares) {
+// Computes the weights of the blurred columns (or rows) at the places `x` with the widths `blur`,
+// both in cells. Places that are not finite give weights of cells inside the pattern.
+inline void ComputeCellWeights(Floats x, Floats blur, int num_cells, const OuterEdges& outer,
+                               CellWeights* weights) {
   constexpr float kReach = 3.3f;  // sigmas
   // Edge k lies between the ringed cells k and k + 1. Edges are one cell apart, except the first
   // and the last, where the quiet zone ends, and the outline of the square.
@@ -58,13 +60,15 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, const OuterEdges
   // The same number of edges for all places; edges out of reach have no effect.
   const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 2, all_edges);
   Ints low = Floor(Max(Min(place, limit), -limit) - reach) + 1;
+  // A narrow quiet zone moves edge 0 inwards by up to one cell, so it may act wherever edge 1 is in
+  // reach. At the other end the spare edge of num_edges covers this.
   low = low < 2 ? Ints{} : low;
   low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
-  shares->first = low;
-  shares->least_first = MinLane(low);
-  shares->largest_first = MaxLane(low);
-  shares->blur = blur;
-  shares->count = num_edges + 1;
+  weights->first = low;
+  weights->least_first = MinLane(low);
+  weights->largest_first = MaxLane(low);
+  weights->blur = blur;
+  weights->count = num_edges + 1;
   const Floats inverse_blur = 1.0f / blur;
   const Floats from_low = place - __builtin_convertvector(low, Floats);
   // Each weight is the difference between the steps of two neighbouring edges.
@@ -81,30 +85,30 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, const OuterEdges
     const NormalLanes normal = NormalAt(z);
     const Floats next_density = normal.density * inverse_blur;
     const Floats next_moment = -z * next_density;
-    shares->value[index] = distribution - normal.distribution;
-    shares->by_x[index] = density - next_density;
-    shares->by_blur[index] = moment - next_moment;
+    weights->value[index] = distribution - normal.distribution;
+    weights->by_x[index] = density - next_density;
+    weights->by_blur[index] = moment - next_moment;
     distribution = normal.distribution;
     density = next_density;
     moment = next_moment;
   }
   const auto last = static_cast<std::size_t>(num_edges);
-  shares->value[last] = distribution;
-  shares->by_x[last] = density;
-  shares->by_blur[last] = moment;
+  weights->value[last] = distribution;
+  weights->by_x[last] = density;
+  weights->by_blur[last] = moment;
 }
 
 // Whether the blur of one of the places reaches one of the outermost `num_rings` rings.
-inline bool Reaches(int num_rings, const Shares& shares, int num_cells) {
-  return shares.least_first < num_rings ||
-         shares.largest_first + shares.count > num_cells + 2 * kRing - num_rings;
+inline bool Reaches(int num_rings, const CellWeights& weights, int num_cells) {
+  return weights.least_first < num_rings ||
+         weights.largest_first + weights.count > num_cells + 2 * kRing - num_rings;
 }
 
 // Lightness of the blurred pattern and its derivatives with respect to u, v and the two blurs (all
 // in cells).
 struct Blended {
   Floats value{}, by_u{}, by_v{}, by_blur_u{}, by_blur_v{};
-  Floats by_u_v{}, by_uu_vv{};
+  Floats by_u_v{}, by_uu_vv{};  // d2/du dv and d4/du2 dv2, for AddCorrelation()
 };
 
 namespace internal {
@@ -117,16 +121,16 @@ struct Sums {
 
 // Adds the i-th column with a weight at the places; `weigh` selects how much of it counts.
 template <typename Weigh>
-void AddColumn(const Shares& shares, int i, const Weigh& weigh, Sums* sums) {
+void AddColumn(const CellWeights& weights, int i, const Weigh& weigh, Sums* sums) {
   const auto index = static_cast<std::size_t>(i);
-  sums->value += weigh(shares.value[index]);
-  sums->by_x += weigh(shares.by_x[index]);
-  sums->by_blur += weigh(shares.by_blur[index]);
+  sums->value += weigh(weights.value[index]);
+  sums->by_x += weigh(weights.by_x[index]);
+  sums->by_blur += weigh(weights.by_blur[index]);
 }
 
 // `row(j)` returns the Sums of the j-th row with a weight at the places.
 template <typename Row>
-Blended BlendRows(const Shares& u, const Shares& v, const Row& row) {
+Blended BlendRows(const CellWeights& u, const CellWeights& v, const Row& row) {
   Blended sum;
   Floats by_blur_u_v{};
   for (int j = 0; j < v.count; ++j) {
@@ -154,21 +158,21 @@ inline Floats Choose(Ints is_chosen, Floats x) {
 }
 
 // Sums over the columns of the black square.
-inline Sums WithinSquare(const Shares& shares, int num_cells) {
+inline Sums WithinSquare(const CellWeights& weights, int num_cells) {
   Sums sums;
-  for (int i = 0; i < shares.count; ++i) {
-    const Ints column = shares.first + i;
+  for (int i = 0; i < weights.count; ++i) {
+    const Ints column = weights.first + i;
     const Ints is_within = (column >= kRing) & (column < num_cells + kRing);
     AddColumn(
-        shares, i, [&](Floats share) { return Choose(is_within, share); }, &sums);
+        weights, i, [&](Floats weight) { return Choose(is_within, weight); }, &sums);
   }
   return sums;
 }
 
 }  // namespace internal
 
-// For cells that are light or dark.
-inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares& v) {
+// Blurs a pattern whose cells are light (1) or dark (0).
+inline Blended BlendLight(const LightCells& light, const CellWeights& u, const CellWeights& v) {
   return internal::BlendRows(u, v, [&](int j) {
     Ints columns;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -179,14 +183,14 @@ inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares
     for (int i = 0; i < u.count; ++i) {
       const Ints is_light = -(columns >> i & 1);
       internal::AddColumn(
-          u, i, [&](Floats share) { return internal::Choose(is_light, share); }, &sums);
+          u, i, [&](Floats weight) { return internal::Choose(is_light, weight); }, &sums);
     }
     return sums;
   });
 }
 
-// For a dark square on light ground: all cells but the rings are dark.
-inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
+// Blurs a dark square on light ground.
+inline Blended BlendGround(const CellWeights& u, const CellWeights& v, int num_cells) {
   const internal::Sums a = internal::WithinSquare(u, num_cells);
   const internal::Sums b = internal::WithinSquare(v, num_cells);
   return {1.0f - a.value * b.value,
@@ -205,8 +209,8 @@ struct Around {
   std::array<FloatsArray<1>, 4> by_margin{};
 };
 
-// For cells that are dark except in the outermost ring.
-inline Around BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
+// Blurs a pattern that is dark except in the outermost ring, the surroundings of the quiet zone.
+inline Around BlendOutermost(const Lightness& lightness, const CellWeights& u, const CellWeights& v,
                              int num_cells) {
   std::array<const float*, kLanes> corners;
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -214,13 +218,11 @@ inline Around BlendOutermost(const Lightness& lightness, const Shares& u, const 
         lightness.data() + v.first[lane] * kMaxRingedCells + u.first[lane];
   }
   const int last = num_cells + 2 * kRing - 1;
-  const auto is_outermost = [&](const Shares& shares, int i) {
-    return shares.least_first + i == 0 || shares.largest_first + i == last;
+  const auto is_outermost = [&](const CellWeights& weights, int i) {
+    return weights.least_first + i == 0 || weights.largest_first + i == last;
   };
   Around around;
-  int j = 0;
-  around.blended = internal::BlendRows(u, v, [&](int row) {
-    j = row;
+  around.blended = internal::BlendRows(u, v, [&](int j) {
     const bool is_outermost_row = is_outermost(v, j);
     internal::Sums sums;
     Floats left{}, right{};
@@ -231,7 +233,7 @@ inline Around BlendOutermost(const Lightness& lightness, const Shares& u, const 
         cells[lane] = corners[lane][j * kMaxRingedCells + i];
       }
       internal::AddColumn(
-          u, i, [&](Floats share) { return cells * share; }, &sums);
+          u, i, [&](Floats weight) { return cells * weight; }, &sums);
       const Floats by_x = cells * u.by_x[static_cast<std::size_t>(i)];
       left += internal::Choose(u.first + i == 0, by_x);
       right -= internal::Choose(u.first + i == last, by_x);

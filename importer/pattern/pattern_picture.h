@@ -111,13 +111,13 @@ class PatternPicture {
     const Floats v_by_x = n * flat.v_by_x, v_by_y = n * flat.v_by_y;
     const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
     const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
-    Shares u, v;
+    CellWeights u, v;
     const Floats blur_u = cells_u * p[P::kBlurU], blur_v = cells_v * p[P::kBlurV];
     const auto outline_shift = static_cast<float>(model_.outline_shift_blurs);
-    ComputeShares(n * flat.u, blur_u, model_.num_cells,
-                  {p[P::kMargin], p[P::kMargin + 1], outline_shift * blur_u}, &u);
-    ComputeShares(n * flat.v, blur_v, model_.num_cells,
-                  {p[P::kMargin + 2], p[P::kMargin + 3], outline_shift * blur_v}, &v);
+    ComputeCellWeights(n * flat.u, blur_u, model_.num_cells,
+                       {p[P::kMargin], p[P::kMargin + 1], outline_shift * blur_u}, &u);
+    ComputeCellWeights(n * flat.v, blur_v, model_.num_cells,
+                       {p[P::kMargin + 2], p[P::kMargin + 3], outline_shift * blur_v}, &v);
     Floats inner{};
     Around around;
     Blended pattern = BlendAll(
@@ -240,8 +240,8 @@ class PatternPicture {
     return place;
   }
 
-  Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
-                   Around* around) const {
+  Blended BlendAll(const CellWeights& u, const CellWeights& v, Floats correlation_px,
+                   Floats* inner_value, Around* around) const {
     const int n = model_.num_cells;
     const Blended inner = BlendLight(model_.inner, u, v);
     *inner_value = inner.value;

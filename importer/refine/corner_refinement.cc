@@ -34,18 +34,18 @@ struct FittedSide {
 };
 
 // Memory that the fits of a marker's sides share.
-struct Workspace {
+struct SideFitBuffers {
   EdgeSamples samples;
   EdgeFit fit;
 };
 
 std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, const Pass& pass,
-                                  Workspace* workspace) {
+                                  SideFitBuffers* buffers) {
   if (!(model.light - model.dark > kMinContrast)) return std::nullopt;
-  SampleSide(gray, model, pass.band_px, pass.max_samples, &workspace->samples);
+  SampleSide(gray, model, pass.band_px, pass.max_samples, &buffers->samples);
   const EdgePrior prior = MakeEdgePrior(model);
-  EdgeFit& fit = workspace->fit;
-  if (!FitEdge(workspace->samples, prior, pass.tolerance_px, &fit)) return std::nullopt;
+  EdgeFit& fit = buffers->fit;
+  if (!FitEdge(buffers->samples, prior, pass.tolerance_px, &fit)) return std::nullopt;
   const EdgeParameters& p = fit.parameters;
   if (!(p.Contrast() > kMinContrast) || fit.equations.Rms() > kMaxRelativeRms * p.Contrast() ||
       std::abs(p[EdgeParameters::kOffset]) + std::abs(p[EdgeParameters::kSlope]) > pass.band_px) {
@@ -92,14 +92,14 @@ struct Fit {
 };
 
 std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, double blur_px,
-                            int num_cells, const Pass& pass, Workspace* workspace) {
+                            int num_cells, const Pass& pass, SideFitBuffers* buffers) {
   std::array<FittedSide, kNumCorners> sides;
   ResidualNoise noise;
   Fit fit{{}, 0.0};
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const SideModel model =
         MakeSideModel(gray, corners_px, static_cast<int>(i), num_cells, blur_px);
-    const auto side = FitSide(gray, model, pass, workspace);
+    const auto side = FitSide(gray, model, pass, buffers);
     if (!side) return std::nullopt;
     sides[i] = *side;
     noise.Add(side->uncertainty.noise);
@@ -150,7 +150,7 @@ LightPart CutLight(const cv::Mat& gray, const QuadCorners& corners_px, double ce
 
 }  // namespace
 
-std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
+std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
   const double cell_px = QuadMeanSide(corners_px) / num_cells;
@@ -158,10 +158,10 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
   const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.1, false},
                          {band_px, kMaxEdgeSamples, 0.02, true}};
   Fit fit{{corners_px, {}}, kFirstBlurPx};
-  Workspace workspace;
+  SideFitBuffers buffers;
   for (const Pass& pass : passes) {
     const auto next =
-        FitSides(gray, fit.corners.corners_px, fit.blur_px, num_cells, pass, &workspace);
+        FitSides(gray, fit.corners.corners_px, fit.blur_px, num_cells, pass, &buffers);
     if (!next) return std::nullopt;
     fit = *next;
   }
@@ -182,10 +182,10 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
                     MaxAllowedShiftPx(cell_px, kMaxPatternShiftPx)) {
     return fitted;
   }
-  if (formation.tone().IsLinear()) return RefineCornersByEdges(gray, start_px, cells.rows);
+  if (formation.tone().IsLinear()) return RefineCornersBySides(gray, start_px, cells.rows);
   const LightPart part = CutLight(gray, start_px, cell_px, formation);
   for (Eigen::Vector2d& corner : start_px) corner -= part.origin_px;
-  auto refined = RefineCornersByEdges(part.gray, start_px, cells.rows);
+  auto refined = RefineCornersBySides(part.gray, start_px, cells.rows);
   if (!refined) return std::nullopt;
   for (Eigen::Vector2d& corner : refined->corners_px) corner += part.origin_px;
   return refined;

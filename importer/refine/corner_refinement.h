@@ -1,4 +1,5 @@
-// Sub-pixel corners of a marker by fits of blurred edges.
+// Refines a marker's corners to a fraction of a pixel: fits the whole marker, or its four sides
+// where that fails.
 //
 // cv::cornerSubPix pulls the corners of a marker inwards by 0.1 to 0.4 px, which becomes a scale
 // error of 0.4 to 6 % when the scale comes from the marker's side. A marker is fitted as a whole
@@ -24,11 +25,12 @@ namespace velamap {
 // frame (first pixel's centre at (0,0)), in order around the square; `num_cells` is the number of
 // cells along a side with the border. Nothing if an edge has too little contrast or leaves the
 // image, or if the fit moves a corner too far.
-std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
+std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells);
 
-// Fits a marker whose cells are known (as in pattern_fit.h) as a whole, or its sides where that
-// fails. The sides are fitted to light, because a tone curve moves edges.
+// Fits the whole marker (`cells` and corners as for FitPattern()), or its sides where that fails.
+// `gray`: 8-bit, dark markers on light ground. The sides are fitted in linear light, because a tone
+// curve shifts edges. Returns nothing if both fail or move a corner too far.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
                                             const ImageFormation& formation = ImageFormation());

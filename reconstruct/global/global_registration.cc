@@ -117,7 +117,7 @@ void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* 
   const double explained = ExplainedObservations(problem, *solution);
   if (ExplainedObservations(problem, reversed) < kHopeless * explained) return;
   MarkFits(problem, 1.0, &reversed);
-  PlaceUnsettledMarkers(problem, 1.0, 1.0, &reversed, num_threads);
+  PlaceUnsettledMarkers(problem, 1.0, 1.0, num_threads, &reversed);
   AdjustMap(problem, {15, 1e-3}, &reversed);
   if (ExplainedObservations(problem, reversed) > explained) {
     *solution = std::move(reversed);
@@ -137,8 +137,8 @@ void RegisterAllFrames(GlobalRegistration* global) {
   // More frames of a video are registered than are kept; the others need no adjustment.
   growth.adjust = !global->is_video;
   GrowMap(problem, all, growth, &global->solution);
-  PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution,
-                        global->options.num_threads);
+  PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, global->options.num_threads,
+                        &global->solution);
   VoteOnIds(global);
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);

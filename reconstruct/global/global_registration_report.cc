@@ -27,7 +27,8 @@ void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   }
 }
 
-void LeaveOut(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
+void ExplainWhyNotRegistered(const GlobalRegistration& global, int frame_idx,
+                             RegisteredFrame* frame) {
   const auto& observation_idxs = global.problem.Frame(frame_idx).observation_idxs;
   const auto num_shared =
       std::count_if(observation_idxs.begin(), observation_idxs.end(), [&global](int idx) {
@@ -36,14 +37,14 @@ void LeaveOut(const GlobalRegistration& global, int frame_idx, RegisteredFrame* 
                         global.problem.Observation(idx).marker_idx)]
                     .empty();
       });
-  LeaveOut(static_cast<int>(num_shared), static_cast<int>(observation_idxs.size()),
-           global.options.min_num_inliers, frame);
+  ExplainWhyNotRegistered(static_cast<int>(num_shared), static_cast<int>(observation_idxs.size()),
+                          global.options.min_num_inliers, frame);
 }
 
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
   const auto& pose = global.solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
   if (!pose) {
-    if (frame->reason.empty()) LeaveOut(global, frame_idx, frame);
+    if (frame->reason.empty()) ExplainWhyNotRegistered(global, frame_idx, frame);
     return;
   }
   frame->cam_from_shape = *pose;

@@ -12,12 +12,12 @@
 namespace velamap {
 namespace {
 
-// Ratio of the known markers in a frame that have to agree with its pose.
+// Share of the known markers in a frame that must agree with its pose.
 constexpr double kMinInlierRatio = 0.4;
 // Frames join in the same round as the best frame if their markers have at least this fraction of
 // the views that the best frame's markers have.
 constexpr double kJoinRatio = 0.5;
-// A map of this many frames is good enough for all frames that see it to join at once.
+// A map of fewer frames may at most double in a round.
 constexpr int kManyFrames = 16;
 
 bool IsRegistered(const MapSolution& solution, int frame_idx) {
@@ -96,13 +96,16 @@ int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
                   MapSolution* solution) {
   const auto candidates = FindCandidates(problem, *solution, frame_idxs, options);
   const int num_registered = solution->NumRegistered();
-  int room = num_registered < kManyFrames ? num_registered : static_cast<int>(candidates.size());
-  if (options.max_num_frames > 0) room = std::min(room, options.max_num_frames - num_registered);
+  int max_num_joining =
+      num_registered < kManyFrames ? num_registered : static_cast<int>(candidates.size());
+  if (options.max_num_frames > 0) {
+    max_num_joining = std::min(max_num_joining, options.max_num_frames - num_registered);
+  }
   const std::size_t num_at_once = static_cast<std::size_t>(NumThreads(options.num_threads));
   std::vector<std::optional<Rigid3>> poses(candidates.size());
   int num_joined = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (num_joined >= room) break;
+    if (num_joined >= max_num_joining) break;
     if (num_joined > 0 && candidates[i].num_views < kJoinRatio * candidates.front().num_views) {
       break;
     }
@@ -129,10 +132,12 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
   // The map is not precise while it has few frames.
   constexpr int kFewFrames = 6;
   constexpr double kSettledRatio = 0.6;
+  // Rough, because the next round moves everything again.
+  constexpr MapAdjustmentOptions kBetweenRounds{4, 1e-3};
   const auto tolerance_factor = [solution] {
     return solution->NumRegistered() < kFewFrames ? 2.0 : 1.0;
   };
-  PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution, options.num_threads);
+  PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), options.num_threads, solution);
   while (options.max_num_frames == 0 || solution->NumRegistered() < options.max_num_frames) {
     int num_joined = 0;
     for (const bool accept_ambiguous : {false, true}) {
@@ -142,13 +147,13 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
     }
     if (num_joined == 0) break;
     MarkFits(problem, tolerance_factor(), solution);
-    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution,
-                          options.num_threads);
+    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), options.num_threads,
+                          solution);
     if (!options.adjust) continue;
-    AdjustMap(problem, {4, 1e-3}, solution);
+    AdjustMap(problem, kBetweenRounds, solution);
     MarkFits(problem, tolerance_factor(), solution);
-    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution,
-                          options.num_threads);
+    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), options.num_threads,
+                          solution);
   }
 }
 
@@ -165,7 +170,7 @@ bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marke
 }
 
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
-                           MapSolution* solution, int num_threads) {
+                           int num_threads, MapSolution* solution) {
   std::vector<std::vector<Sim3>> places = solution->shape_from_marker;
   ParallelFor(problem.markers.size(), num_threads, [&](std::size_t idx) {
     const int marker_idx = static_cast<int>(idx);

@@ -25,9 +25,9 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
              const MapGrowthOptions& options, MapSolution* solution);
 
 // Places all markers that are not settled (see IsSettled) by the consensus of all registered
-// frames.
+// frames. An observation agrees within `tolerance_factor` * GrowthTolerance().
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
-                           MapSolution* solution, int num_threads = 1);
+                           int num_threads, MapSolution* solution);
 
 // Whether a marker has one place and the registered frames that see it agree with that: at least
 // two of them, and at least the ratio `settled_ratio`.

@@ -22,7 +22,7 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed) {
                   needed == 1 ? "one image" : "two images", num_images));
 }
 
-void LeaveOut(int num_shared, int num_markers, int needed, RegisteredFrame* frame) {
+void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame) {
   if (num_shared < needed) {
     frame->reason =
         fmt::format("shares {} of its {} markers with the registered images; {} are needed",

@@ -61,9 +61,10 @@ struct Registration {
 // Throws DataError if fewer than `needed` images have markers.
 void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 
-// Notes in `frame` why it could not be registered: the registered images share `num_shared` of its
-// `num_markers` markers, and `needed` would allow it.
-void LeaveOut(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
+// Sets `reason` and `num_contradicting` of a frame that was not registered. It shares `num_shared`
+// of its `num_markers` markers with the registered images; `needed` is the smallest number with
+// which a frame can be registered.
+void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
 
 // What it means that many frames with many markers agree with the shape on no position of the
 // camera, and what to do; empty where there are few of them.

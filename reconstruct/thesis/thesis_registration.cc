@@ -103,8 +103,8 @@ FrameSearchOptions FitSearch(const std::vector<FrameShape>& frames,
   return fitted;
 }
 
-void LeaveOut(const RegistrationState& state, const FrameShape& shape, bool time_order,
-              RegisteredFrame* frame) {
+void ExplainWhyNotRegistered(const RegistrationState& state, const FrameShape& shape,
+                             bool time_order, RegisteredFrame* frame) {
   int num_shared = 0;
   for (const FrameMarker& marker : shape.markers) {
     num_shared += static_cast<int>(state.shape.count(marker.marker_id));
@@ -113,7 +113,7 @@ void LeaveOut(const RegistrationState& state, const FrameShape& shape, bool time
   if (num_shared >= needed && time_order) {
     frame->reason = "not selected by the search around the central frame";
   } else {
-    LeaveOut(num_shared, static_cast<int>(shape.markers.size()), needed, frame);
+    ExplainWhyNotRegistered(num_shared, static_cast<int>(shape.markers.size()), needed, frame);
   }
 }
 
@@ -181,7 +181,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
     registration.frames.push_back(PlaceFrame(state, idx));
     if (!state.alignments[idx]) {
-      LeaveOut(state, state.frames[idx], time_order, &registration.frames.back());
+      ExplainWhyNotRegistered(state, state.frames[idx], time_order, &registration.frames.back());
     }
   }
   registration.shape = std::move(state.shape);

@@ -79,7 +79,7 @@ BENCHMARK(BM_DetectManyMarkers)
     ->Unit(benchmark::kMillisecond);
 
 // All markers of a 1920x1080 frame, from corners off by 0.7 px.
-void BM_RefineCornersByEdges(benchmark::State& state) {
+void BM_RefineCornersBySides(benchmark::State& state) {
   const Eigen::Vector2d kOpenCvFromImagePx(-0.5, -0.5), kOffsetPx(0.5, -0.5);
   const Picture picture = RenderPicture(1920);
   const auto& markers = picture.scene.frames[1].markers;
@@ -88,13 +88,13 @@ void BM_RefineCornersByEdges(benchmark::State& state) {
     for (const MarkerDetection& marker : markers) {
       auto corners_px = marker.corners_in_image_px;
       for (auto& corner : corners_px) corner += kOpenCvFromImagePx + kOffsetPx;
-      benchmark::DoNotOptimize(RefineCornersByEdges(picture.gray, corners_px, num_cells));
+      benchmark::DoNotOptimize(RefineCornersBySides(picture.gray, corners_px, num_cells));
     }
   }
   state.counters["markers/s"] = benchmark::Counter(static_cast<double>(markers.size()),
                                                    benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(BM_RefineCornersByEdges)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_RefineCornersBySides)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace velamap

@@ -261,7 +261,7 @@ void Run(const ShapeComparerCommandOptions& options) {
   if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
   std::optional<UncertainShape> reference;
   const std::vector<Comparison> series = CompareAll(options, layout, &reference);
-  const MetricsReport report = MakeReport(series);
+  const MetricsReport report = MakeComparisonReport(series);
   Write(options, series.front(), report);
   if (!options.comparison_path.empty()) {
     WriteComparisonFolder(options, layout, reference, series);

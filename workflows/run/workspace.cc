@@ -163,11 +163,11 @@ void RemoveOtherImages(const Model& model, const std::vector<std::string>& datab
     if (model_names.count(name) > 0 || !IsRegularFile(copy) || !IsInside(copy, images_path))
       continue;
     // A link to the copy is not a second copy.
-    const bool is_lost_nowhere = is_video ? IsWrittenFrame(copy)
+    const bool can_be_restored = is_video ? IsWrittenFrame(copy)
                                           : IsRegularFile(original) &&
                                                 CanonicalPath(original) != CanonicalPath(copy) &&
                                                 AreEqual(copy, original);
-    if (is_lost_nowhere) RemoveFileOrEmptyFolder(copy);
+    if (can_be_restored) RemoveFileOrEmptyFolder(copy);
   }
 }
 

@@ -256,10 +256,10 @@ TEST(ComparisonFiles, APartKeepsItsNumberWhereAnotherHasNoSurface) {
 TEST(ComparisonSeries, FiguresNameTheirShape) {
   PageExample example;
   example.Add("trim2", Fuller());
-  const MetricsReport one = MakeReport(example.series);
+  const MetricsReport one = MakeComparisonReport(example.series);
   EXPECT_EQ(one.metrics.front().key, "alignment");
   example.Add("trim3", BoatShape(0.001));
-  const MetricsReport two = MakeReport(example.series);
+  const MetricsReport two = MakeComparisonReport(example.series);
   EXPECT_TRUE(two.metrics.empty());
   EXPECT_EQ(two.tables.front().name, "shapes");
   EXPECT_EQ(two.tables.size(), one.tables.size() + 1);

@@ -93,7 +93,7 @@ TEST(RigNumbers, NoNumberDependsOnTheFrame) {
   Sail sail = BentSail();
   SetSigma(0.001, &sail.shape);
   const RigNumbers by_lines = SectionsOf(sail).rigs.at(0);
-  sail.shape = Moved(OddMotion(), sail.shape);
+  sail.shape = Moved(ArbitraryMotion(), sail.shape);
   for (const FrameChoice& choice :
        {FrameChoice{FrameKind::kCamera}, FrameChoice{FrameKind::kMarkers, 51, 308, 500}}) {
     const RigNumbers rig = SectionsOf(sail, {}, choice).rigs.at(0);

@@ -103,7 +103,7 @@ MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape) {
   return moved;
 }
 
-Rigid3 OddMotion() {
+Rigid3 ArbitraryMotion() {
   return {Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized(), {0.4, -1.7, 2.9}};
 }
 

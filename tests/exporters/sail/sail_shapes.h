@@ -52,7 +52,7 @@ void AddHull(const std::vector<Eigen::Vector3d>& centers_m, Sail* sail);
 
 // Moves corners and centres; sigmas keep their axes.
 MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape);
-Rigid3 OddMotion();
+Rigid3 ArbitraryMotion();
 
 // Moves corners and centre.
 void ShiftMarker(int marker_id, const Eigen::Vector3d& shift_m, MarkerShape* shape);

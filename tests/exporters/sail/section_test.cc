@@ -118,7 +118,7 @@ TEST(Section, RigidMotionChangesNoNumber) {
   SetSigma(0.002, &moved.shape);
   const SectionOptions options{{1.0, 3.0}};
   const SectionReport before = SectionsOf(moved, options);
-  moved.shape = Moved(OddMotion(), moved.shape);
+  moved.shape = Moved(ArbitraryMotion(), moved.shape);
   const SectionReport after = SectionsOf(moved, options);
   ASSERT_EQ(before.sections.size(), 5u);
   ExpectSameNumbers(before, after, 1e-7);
@@ -150,7 +150,7 @@ TEST(Section, OrderOfMarkersInTheShapeAndOfLinesInTheLayoutDoesNotMatter) {
 TEST(Section, CameraFrameGivesTheSameNumbersButHeights) {
   Sail sail = ExampleSail();
   const SectionReport by_lines = SectionsOf(sail);
-  sail.shape = Moved(OddMotion(), sail.shape);
+  sail.shape = Moved(ArbitraryMotion(), sail.shape);
   const SectionReport by_camera = SectionsOf(sail, {}, FrameChoice{FrameKind::kCamera});
   ASSERT_EQ(by_camera.sections.size(), by_lines.sections.size());
   for (std::size_t i = 0; i < by_lines.sections.size(); ++i) {

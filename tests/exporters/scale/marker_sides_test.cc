@@ -46,7 +46,7 @@ TEST(MarkerSides, SizeInTheImagesIsFocalLengthTimesSizeOverDistance) {
   EXPECT_NEAR(*markers[7].side_px / *markers[6].side_px, 0.5, 0.02);
 }
 
-TEST(MarkerSides, IntersectionUndoesWhatDrewThePoints) {
+TEST(MarkerSides, IntersectionRestoresDisplacedPoints) {
   for (const double scale : {1.0, 50.0}) {
     Model model = ExampleModel();
     TransformModel(ExampleSim3(scale), &model);
@@ -130,8 +130,9 @@ TEST(MarkerSides, SigmasAreCalibrated) {
     mean_sigmas.push_back(*marker.mean_sigma);
     ratio_sigmas.push_back(*marker.ratio_sigma);
   }
-  // The redundancy does not account for exact cameras, which makes sigmas larger by the square root
-  // of the camera factor, 96 over 78.
+  // CameraFactor() assumes adjusted cameras: it subtracts 6 unknowns for each of the 3 cameras from
+  // the redundancy of 96. Here the cameras are exact, so the sigmas come out larger by
+  // sqrt(96 / 78).
   const double factor = std::sqrt(96.0 / 78.0);
   EXPECT_NEAR(ComputeStatistics(mean_sigmas).rms / ComputeStatistics(means).standard_deviation,
               factor, 0.2);

@@ -50,7 +50,7 @@ TEST(ShapeFrame, EveryKindCanBeChosen) {
 
 TEST(ShapeFrame, ByMarkersPutsThemWhereTheyBelong) {
   Sail sail = SailWithHull();
-  sail.shape = Moved(OddMotion(), sail.shape);
+  sail.shape = Moved(ArbitraryMotion(), sail.shape);
   const ShapeFrame frame =
       ChooseFrame(sail.shape, sail.layout, FrameChoice{FrameKind::kMarkers, 104, 111, 307});
   EXPECT_EQ(frame.name, "markers 104 111 307");
@@ -65,7 +65,7 @@ TEST(ShapeFrame, ByMarkersPutsThemWhereTheyBelong) {
 TEST(ShapeFrame, ByLinesHasTheOriginAtTheLuffOfTheFootAndZUp) {
   Sail sail = ExampleSail();
   const MarkerShape truth = sail.shape;  // built in this very frame
-  sail.shape = Moved(OddMotion(), sail.shape);
+  sail.shape = Moved(ArbitraryMotion(), sail.shape);
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
   EXPECT_EQ(frame.kind, FrameKind::kLines);
   EXPECT_EQ(frame.name, "lines h1 v1");
@@ -88,7 +88,7 @@ TEST(ShapeFrame, OnTheOtherTackYIsToWindwardAndSaysSo) {
 TEST(ShapeFrame, WithoutAVerticalLineTheHighestHorizontalOneGivesUp) {
   Sail sail = ExampleSail();
   sail.layout.parts[0].vertical.clear();
-  sail.shape = Moved(OddMotion(), sail.shape);
+  sail.shape = Moved(ArbitraryMotion(), sail.shape);
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
   EXPECT_EQ(frame.name, "lines h1 h3");
   EXPECT_GT(InFrame(frame, sail, 300).z(), 3.5);
@@ -118,7 +118,7 @@ TEST(ShapeFrame, ByTheHullDoesNotMoveWithTheSail) {
 TEST(ShapeFrame, SameBoatInTwoClipsComparesDirectly) {
   const Sail sail = SailWithHull();
   Sail other = sail;
-  other.shape = Moved(OddMotion(), sail.shape);
+  other.shape = Moved(ArbitraryMotion(), sail.shape);
   for (const FrameChoice& choice :
        {FrameChoice{FrameKind::kMarkers, 10, 13, 300}, FrameChoice{FrameKind::kReferencePart},
         FrameChoice{FrameKind::kLines}}) {
@@ -231,7 +231,7 @@ TEST(ShapeFrame, WithoutLayoutItIsTheCamera) {
 TEST(ShapeFrame, MovedModelAndShapeAgreeAndReprojectAlike) {
   const Model model = ExampleModel();
   Model moved = model;
-  const Rigid3 motion = OddMotion();
+  const Rigid3 motion = ArbitraryMotion();
   MoveModel(motion, &moved);
   for (const auto& [id, point] : model.points3D) {
     ExpectNear(moved.points3D.at(id).x_in_world, motion * point.x_in_world, 1e-12);
@@ -263,7 +263,7 @@ TEST(ShapeFrame, SigmasTurnWithTheFullCovariance) {
   own *= 1e-6;
   const Eigen::Vector3d shared(1e-3, -2e-3, 3e-3);
   const PointCovariance covariance = MarkerCovariance(7, own, shared);
-  const Rigid3 motion = OddMotion();
+  const Rigid3 motion = ArbitraryMotion();
   const PointCovariance turned = RotateCovariance(motion.rotation, covariance);
   const Eigen::Matrix3d rotation = motion.rotation.toRotationMatrix();
   const Eigen::Matrix3d expected =

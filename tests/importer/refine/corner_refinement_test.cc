@@ -235,14 +235,14 @@ TEST(RefineCorners, SidesAloneAreFittedToLight) {
   EXPECT_LT(measure(ImageFormation()).bias_px, -0.5);
 }
 
-TEST(RefineCornersByEdges, SidesBentByTheLensMeetInTheirCorners) {
+TEST(RefineCornersBySides, SidesBentByTheLensMeetInTheirCorners) {
   MarkerGridOptions options = Chequered(110, 0.7);
   options.camera = {CameraModel::kOpenCV, 960, 720, {600, 600, 480, 360, -0.15, 0.02, 0, 0}};
   options.max_tilt_deg = 30;
   const MarkerGrid grid = MakeMarkerGrid(options);
   const Quality fitted =
       Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
-        return RefineCornersByEdges(gray, start, cells.rows);
+        return RefineCornersBySides(gray, start, cells.rows);
       });
   EXPECT_EQ(fitted.num_failed, 0);
   EXPECT_LT(std::abs(fitted.bias_px), 0.03);

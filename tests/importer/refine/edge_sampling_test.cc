@@ -31,8 +31,8 @@ TEST(SampleSide, ASideNoLongerThanItsBlurHasNoSamples) {
   EXPECT_GT(samples.count, 0);
 }
 
-TEST(RefineCornersByEdges, AMarkerNoLargerThanItsBlurIsNone) {
-  EXPECT_FALSE(RefineCornersByEdges(DarkSquare(10, 2), Square(9.5, 2.0), 5));
+TEST(RefineCornersBySides, AMarkerNoLargerThanItsBlurIsNone) {
+  EXPECT_FALSE(RefineCornersBySides(DarkSquare(10, 2), Square(9.5, 2.0), 5));
 }
 
 }  // namespace

@@ -87,23 +87,24 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   ExpectDerivatives<Changes>(Changes::Zero(), Changes::Constant(0.01), jacobian, value, 0.02, 0.3);
 }
 
-TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
+TEST(ComputeCellWeights, StayInsideThePatternAndAddUpToOne) {
   constexpr int kNumCells = 6;
   const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
-  Shares shares;
+  CellWeights weights;
   for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
-    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
-                  kNumCells, {0.4f, 1.2f, AllLanes(0.2)}, &shares);
+    ComputeCellWeights(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
+                       kNumCells, {0.4f, 1.2f, AllLanes(0.2)}, &weights);
     Floats sum{};
-    for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
+    for (int i = 0; i < weights.count; ++i) sum += weights.value[static_cast<std::size_t>(i)];
     for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
   }
   for (const float blur : {0.5f, infinity, nan}) {
-    ComputeShares(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
-                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, {}, &shares);
+    ComputeCellWeights(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
+                       Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, {},
+                       &weights);
     for (int lane = 0; lane < kLanes; ++lane) {
-      EXPECT_GE(shares.first[lane], 0);
-      EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);
+      EXPECT_GE(weights.first[lane], 0);
+      EXPECT_LE(weights.first[lane] + weights.count, kNumCells + 2 * kRing);
     }
   }
 }

@@ -190,7 +190,7 @@ TEST(PlaceUnsettledMarkers, PutsBackWhatStandsWrongAndLeavesTheRest) {
   solution.shape_from_marker[4].front().translation.x() += 0.5;
   solution.shape_from_marker[17].clear();
   MarkFits(map.problem, 1.0, &solution);
-  PlaceUnsettledMarkers(map.problem, 0.6, 1.0, &solution);
+  PlaceUnsettledMarkers(map.problem, 0.6, 1.0, 1, &solution);
   for (std::size_t idx = 0; idx < solution.shape_from_marker.size(); ++idx) {
     ASSERT_EQ(solution.shape_from_marker[idx].size(), 1u) << idx;
     const double error =

@@ -17,7 +17,7 @@ Registration RegistrationOf(int num_left_out, int num_shared) {
   for (int i = 0; i < 100; ++i) {
     RegisteredFrame frame;
     if (i < num_left_out) {
-      LeaveOut(num_shared, 12, 4, &frame);
+      ExplainWhyNotRegistered(num_shared, 12, 4, &frame);
     } else {
       frame.cam_from_shape = Rigid3();
     }

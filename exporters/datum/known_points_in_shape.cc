@@ -1,4 +1,4 @@
-#include "exporters/datum/present_points.h"
+#include "exporters/datum/known_points_in_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,16 +17,17 @@ std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const Know
 
 }  // namespace
 
-PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPoint>& known,
-                             const PointCovariance* covariance) {
-  PresentPoints present;
+KnownPointsInShape CollectKnownPointsInShape(const MarkerShape& shape,
+                                             const std::vector<KnownPoint>& known,
+                                             const PointCovariance* covariance) {
+  KnownPointsInShape present;
   std::vector<CornerId> found;
   DatumPoints& points = present.points;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const std::optional<Eigen::Vector3d> x = PointInShape(shape, known[i]);
     if (!x) continue;
-    if (!known[i].is_check) present.datum.push_back(points.points.size());
-    present.idxs.push_back(i);
+    if (!known[i].is_check) present.datum_idxs.push_back(points.points.size());
+    present.known_idxs.push_back(i);
     found.push_back({known[i].marker_id, known[i].corner});
     points.points.push_back({*x, known[i].x_m, known[i].sigma_m});
     points.center_in_shape_m += *x;
