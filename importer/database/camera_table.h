@@ -19,10 +19,11 @@ namespace velamap {
 // Returns the new camera's id.
 CameraId InsertCamera(const Camera& camera, bool is_calibrated, SQLite::Database* database);
 
-// Whether each camera is calibrated, except those whose images another program has added.
+// Whether no camera has prior_focal_length 0. Cameras that have images, but none with marker
+// detections, do not count: another program added them.
 bool AllCamerasAreCalibrated(SQLite::Database* database);
 
-// Leaves out cameras whose model velamap does not have, and therefore has not imported. Throws
+// Skips cameras with a model that velamap does not support; velamap did not import those. Throws
 // InputError for a wrong number of parameters, a picture without pixels or a focal length that is
 // not positive.
 std::map<CameraId, Camera> ReadCameraRows(const std::string& path, SQLite::Database* database);

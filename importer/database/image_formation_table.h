@@ -19,8 +19,8 @@ namespace velamap {
 // Creates the table if it is missing and replaces its row.
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database);
 
-// Nothing in the database of an earlier velamap, or of an import without an estimate. Throws
-// InputError, naming the path, for a value that is not a number or that no estimate gives.
+// Returns nothing for the database of an earlier velamap or of an import without an estimate.
+// Throws InputError, naming the path, for a value that is not a number or that no estimate gives.
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database);
 

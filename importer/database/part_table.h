@@ -38,8 +38,8 @@ struct PartRecord {
 // Creates the table if it is missing and replaces its row.
 void WritePart(const PartRecord& record, SQLite::Database* database);
 
-// Nothing in the database of a whole import. Throws InputError, naming the path, for values that no
-// import writes.
+// Returns nothing for the database of a whole import. Throws InputError, naming the path, for
+// values that no import writes.
 std::optional<PartRecord> ReadPart(const std::string& path, SQLite::Database* database);
 
 }  // namespace velamap

@@ -19,16 +19,16 @@ namespace velamap {
 
 struct TrackingState {
   int first_frame = 0, frame_step = 1;  // of the VideoOptions
-  int last_frame = -1;                  // the number of the last frame that was searched
-  int num_frames = 0;                   // searched so far
-  int num_damaged = 0;                  // of these, left out because the video is damaged there
-  MarkerTracks tracks;                  // after it
+  int last_frame = -1;                  // number of the last frame that was reached
+  int num_frames = 0;                   // reached so far, damaged ones included
+  int num_damaged = 0;  // of num_frames: not searched, because the video is damaged there
+  MarkerTracks tracks;  // state after last_frame
 };
 
 // Creates the tables if they are missing and replaces their rows.
 void WriteTracking(const TrackingState& state, SQLite::Database* database);
 
-// Nothing where no video was tracked, or by an earlier version without num_damaged. Throws
+// Returns nothing if no video was tracked, or if a version without num_damaged tracked it. Throws
 // InputError, naming the path, for values that no tracking gives.
 std::optional<TrackingState> ReadTracking(const std::string& path, SQLite::Database* database);
 

@@ -1,4 +1,4 @@
-// Runs the installed colmap program, without a shell. It ends with us
+// Runs the installed colmap program, without a shell. It is stopped when velamap ends
 // (importer/process/child_process.h).
 
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace velamap {
 
-// A program that runs longer is ended.
+// The longest time that a run may take; then it is stopped.
 struct ColmapLimit {
   std::chrono::duration<double> time;
   std::string set_by;  // what the message names, such as an option
@@ -32,8 +32,8 @@ std::string RunColmap(const std::string& program, const std::vector<std::string>
                       const std::string& log_path, const ColmapLimit& limit = kColmapHelpLimit);
 
 // Tells whether `colmap COMMAND -h` lists the option (given without its dashes). Options differ
-// between versions, and an unknown one is fatal. Every command is run once per process. Throws as
-// RunColmap does.
+// between versions, and an unknown one is fatal. The help of each command is read once per process.
+// Throws as RunColmap does.
 bool ColmapHasOption(const std::string& program, const std::string& command,
                      const std::string& option);
 

@@ -58,7 +58,7 @@ TEST(ShapeJson, WhatIsUnknownHasNoKey) {
   EXPECT_THAT(Text(ExampleModel(), {}), testing::Not(testing::HasSubstr("null")));
 }
 
-// The file is sent around, so that its reasons name no folder.
+// The file is shared, so its reasons must not name folders.
 TEST(ShapeJson, HasTheVerdictWithItsReasons) {
   const Verdict verdict = {ReportStatus::kBad,
                            {{ReportStatus::kBad, "the calibration /home/me/camera.yml is another"},
@@ -72,7 +72,7 @@ TEST(ShapeJson, HasTheVerdictWithItsReasons) {
             nlohmann::json::parse(R"({"level": "good", "reasons": []})"));
 }
 
-// The parameters of all models have COLMAP's names; a camera without an image is none of the clip.
+// The parameters of all models have COLMAP's names; a camera without images is not listed.
 TEST(ShapeJson, CamerasHaveTheirParametersByName) {
   const struct {
     CameraModel model;

@@ -1,6 +1,7 @@
-// What shoot_planner says of a shoot against what becomes of the shoot: a clip rendered along the
-// planned path, its reconstruction, and its truth.
+// Compares the precision that shoot_planner predicts with the result and the truth of a clip
+// rendered along the planned path.
 
+#include <cmath>
 #include <sstream>
 
 #include <gtest/gtest.h>

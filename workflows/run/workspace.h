@@ -32,9 +32,9 @@ struct WorkspacePaths {
   std::filesystem::path ColmapLog() const { return root / "colmap.log"; }
 };
 
-// The files and folders that every run writes there. images/ is not one of them, because
-// AddModelImages() checks its files one by one, nor is camera.yml, which is written only without
-// --camera_path. `used_by` names the option.
+// The files and folders that every run writes into the workspace `path`. images/ is not one of
+// them, because AddModelImages() checks its files one by one, nor is camera.yml, which is written
+// only without --camera_path. `used_by` names the option.
 std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by);
 
 // Holds the workspace during a run, and its lock. Unless Keep() is called, the destructor removes a
@@ -42,9 +42,9 @@ std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::strin
 // database leaves nothing behind.
 class Workspace {
  public:
-  // Opens an earlier workspace or makes a new one. Throws InputError if the path is a file, if the
-  // folder holds anything but a workspace of velamap and the input, if another velamap works there,
-  // or if it cannot be written.
+  // Opens an earlier workspace or makes a new one. Throws InputError if the path is a file or lies
+  // in the folder of the photographs, if the folder is no workspace and holds anything but the
+  // input, if another velamap works there, or if it cannot be written.
   Workspace(const std::string& path, const std::string& image_path);
   ~Workspace();
   Workspace(const Workspace&) = delete;
@@ -59,10 +59,10 @@ class Workspace {
   std::optional<FileLock> lock_;
 };
 
-// Adds the images of the model to images/. Photographs are copied from `image_path`; sub-folders
-// and files that are there are kept. The import has written the frames of a video there; a later
-// run that selects other frames warns of those that have been removed. Throws InputError if the
-// folder cannot be written.
+// Copies the photographs of the model from `image_path` to images/, with their sub-folders.
+// Existing files stay; a photograph of another size than the original gives a warning. Frames of a
+// video were written by the import. Images of the model that are missing, for example frames that
+// an earlier run removed, give a warning. Throws InputError if the folder cannot be written.
 void AddModelImages(const Model& model, const std::string& image_path,
                     const std::filesystem::path& images_path);
 

@@ -107,7 +107,8 @@ TEST(ShapeMetrics, WithoutAListOfMarkersThereIsNoRatio) {
   EXPECT_THAT(metrics.missing_marker_ids, IsEmpty());
 }
 
-// The blind spot in README.md: sides that look too short give a wrong scale that no metric shows.
+// A scale error that all markers share is invisible to these metrics (workflows/studies/README.md):
+// sides that look too short give a wrong scale.
 TEST(ShapeMetrics, DoNotSeeMarkersThatAllShrinkBeforeScaling) {
   Model model = ExampleModel();
   for (const ShapeMarker& marker : ExampleShape().markers) {

@@ -32,7 +32,7 @@ class ExifBuilder {
                       {numerator, denominator});
   }
 
-  // The segment of a JPEG, which follows its first two bytes.
+  // The APP1 segment, which belongs directly after the SOI marker (two bytes) of a JPEG file.
   std::string Segment() const {
     unsigned char* bytes = nullptr;
     unsigned int size = 0;
