@@ -17,14 +17,14 @@ namespace velamap {
 
 struct FrameResult {
   FrameDetections detections;
-  Camera camera;                       // for the frame's size
-  std::string skipped_because;         // not empty: the file was not a complete image
-  bool is_damaged = false;             // skipped, because a video is damaged there
-  std::optional<SourceFile> source;    // of a photograph
-  PriorShapeAgreement prior_shape;     // of the markers that were found without it
-  std::optional<MarkerTracks> tracks;  // of a video, after this frame
-  ImportTimes times;                   // of the thread that processed it
-  double reading_s = 0.0;              // Frame::decode_s
+  Camera camera;                              // for the frame's size
+  std::string skipped_because;                // not empty: the file was not a complete image
+  bool is_damaged = false;                    // skipped, because a video is damaged there
+  std::optional<SourceFile> source;           // of a photograph
+  PriorShapeAgreement prior_shape_agreement;  // of the markers that were found without it
+  std::optional<MarkerTracks> tracks;         // of a video, after this frame
+  ImportTimes times;                          // of the thread that processed it
+  double reading_s = 0.0;                     // Frame::decode_s
 };
 
 // Reads all frames of `source`, calls `process` for each on up to `num_threads` threads (frame_idx

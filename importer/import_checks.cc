@@ -119,8 +119,8 @@ void CheckPhotographs(const MarkerImporterOptions& options,
 
 }  // namespace
 
-void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
-                   const ColmapDatabase& database) {
+void CheckSameSettings(const MarkerImporterOptions& options, const std::string& detector,
+                       const ColmapDatabase& database) {
   const std::optional<std::string> known_detector = database.ReadDetector();
   if (!known_detector) return;  // it holds no images
   if (*known_detector != detector) {
@@ -186,7 +186,7 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
     const std::string name = file.filename().string();
     if (!NumberOfVideoFrame(name) || known.count(name) > 0 || IsWrittenFrame(file)) continue;
     throw InputError(
-        fmt::format("{}: a picture that velamap did not write stands where a frame could go; move "
+        fmt::format("{}: a picture that velamap did not write is where a frame would go; move "
                     "it away, or choose another folder",
                     file.string()));
   }

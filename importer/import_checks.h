@@ -17,10 +17,10 @@ inline constexpr double kFewMarkersPerFrame = 0.5;
 inline constexpr char kImportAnewRemedy[] =
     "write to a new place, or give --import_anew 1 to import everything again";
 
-// Throws InputError if `database` was made with another `detector` (DescribeDetector()) or
-// calibration.
-void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
-                   const ColmapDatabase& database);
+// Throws InputError if `database` holds images that were imported with another `detector`
+// (DescribeDetector()) or another calibration than this run has.
+void CheckSameSettings(const MarkerImporterOptions& options, const std::string& detector,
+                       const ColmapDatabase& database);
 
 // Throws InputError if a photograph of the database, or its video, has changed or is missing, or if
 // the database holds frames that options.allowed_frames leaves out.

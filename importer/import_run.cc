@@ -61,7 +61,8 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
     } else {
       const std::vector<MarkerQuad> quads =
           turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
-               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
+               : SearchInWholeFrame(detector_, result.camera, frame->gray,
+                                    &result.prior_shape_agreement);
       result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
     }
     WriteImage(*frame, result.detections);
@@ -92,7 +93,7 @@ void ImportRun::Consume(const FrameResult& result) {
   ++report_.num_frames_read;
   report_.num_markers += static_cast<int>(detections.markers.size());
   report_.num_rejected += static_cast<int>(detections.rejected.size());
-  report_.prior_shape += result.prior_shape;
+  report_.prior_shape_agreement += result.prior_shape_agreement;
   report_.num_images_without_markers += detections.markers.empty();
   report_.num_fallbacks += static_cast<int>(
       std::count_if(detections.markers.begin(), detections.markers.end(),
@@ -158,7 +159,7 @@ std::vector<MarkerQuad> ImportRun::SearchInTurn(int frame_idx, const Frame& fram
       },
       std::move(seen_coarsely),
       [&](const std::vector<MarkerQuad>& found) {
-        return ExpectInFrame(detector_, result->camera, found, &result->prior_shape);
+        return ExpectInFrame(detector_, result->camera, found, &result->prior_shape_agreement);
       }};
   quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
                   : SearchTracked(search, frame_number, tracks);

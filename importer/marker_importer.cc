@@ -120,7 +120,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   if (known_names.empty()) database.ForgetSources();
   CheckSources(options, known_names, database);
   CheckPart(options, database);
-  CheckExisting(options, DescribeDetector(detector), database);
+  CheckSameSettings(options, DescribeDetector(detector), database);
   RecordSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
   const bool estimates_formation = detector.options.corner_refinement == CornerRefinement::kEdge &&

@@ -61,15 +61,15 @@ struct ImportReport {
   int num_images_added = 0;    // to the database
   int num_images_present = 0;  // in the database before this run
   int num_images_without_markers = 0;
-  int num_markers = 0;                 // detections accepted in this run
-  int num_rejected = 0;                // detections rejected in this run
-  int num_not_in_layout = 0;           // of them, when they were found, because no part names them
-  int num_doubtful_rotations = 0;      // of them, when they were found (kDoubtfulRotation)
-  int num_fallbacks = 0;               // accepted without a corner fit: corners of cv::cornerSubPix
-  int num_pairs = 0;                   // image pairs with matches
-  PriorShapeAgreement prior_shape;     // of all frames
-  std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
-  std::vector<SkippedImage> skipped;   // unreadable files
+  int num_markers = 0;             // detections accepted in this run
+  int num_rejected = 0;            // detections rejected in this run
+  int num_not_in_layout = 0;       // of them, when they were found, because no part names them
+  int num_doubtful_rotations = 0;  // of them, when they were found (kDoubtfulRotation)
+  int num_fallbacks = 0;           // accepted without a corner fit: corners of cv::cornerSubPix
+  int num_pairs = 0;               // image pairs with matches
+  PriorShapeAgreement prior_shape_agreement;  // of all frames
+  std::vector<int> ids_not_in_layout;         // detected and rejected, because no part names them
+  std::vector<SkippedImage> skipped;          // unreadable files
   // Frames of a video that were left out because the file is damaged there or before them,
   // including those of an earlier import of the same frames.
   int num_frames_damaged = 0;

@@ -202,16 +202,16 @@ inline Blended BlendGround(const CellWeights& u, const CellWeights& v, int num_c
           -a.by_blur * b.by_blur / (u.blur * v.blur)};
 }
 
-// The surroundings of the quiet zone, and the derivatives with respect to its widths: before the
-// first column, after the last column, before the first row, after the last row.
-struct Around {
+// The blurred surroundings of the quiet zone, and their derivatives with respect to its widths:
+// before the first column, after the last column, before the first row, after the last row.
+struct BlendedSurroundings {
   Blended blended;
   std::array<FloatsArray<1>, 4> by_margin{};
 };
 
 // Blurs a pattern that is dark except in the outermost ring, the surroundings of the quiet zone.
-inline Around BlendOutermost(const Lightness& lightness, const CellWeights& u, const CellWeights& v,
-                             int num_cells) {
+inline BlendedSurroundings BlendOutermost(const Lightness& lightness, const CellWeights& u,
+                                          const CellWeights& v, int num_cells) {
   std::array<const float*, kLanes> corners;
   for (int lane = 0; lane < kLanes; ++lane) {
     corners[static_cast<std::size_t>(lane)] =
@@ -221,8 +221,8 @@ inline Around BlendOutermost(const Lightness& lightness, const CellWeights& u, c
   const auto is_outermost = [&](const CellWeights& weights, int i) {
     return weights.least_first + i == 0 || weights.largest_first + i == last;
   };
-  Around around;
-  around.blended = internal::BlendRows(u, v, [&](int j) {
+  BlendedSurroundings surroundings;
+  surroundings.blended = internal::BlendRows(u, v, [&](int j) {
     const bool is_outermost_row = is_outermost(v, j);
     internal::Sums sums;
     Floats left{}, right{};
@@ -239,14 +239,14 @@ inline Around BlendOutermost(const Lightness& lightness, const CellWeights& u, c
       right -= internal::Choose(u.first + i == last, by_x);
     }
     const auto index = static_cast<std::size_t>(j);
-    around.by_margin[0].groups[0] += left * v.value[index];
-    around.by_margin[1].groups[0] += right * v.value[index];
+    surroundings.by_margin[0].groups[0] += left * v.value[index];
+    surroundings.by_margin[1].groups[0] += right * v.value[index];
     const Floats by_y = sums.value * v.by_x[index];
-    around.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
-    around.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
+    surroundings.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
+    surroundings.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
     return sums;
   });
-  return around;
+  return surroundings;
 }
 
 // *b += factor * a.

@@ -7,9 +7,9 @@
 #include "importer/base/error.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/foreign_pixels.h"
+#include "importer/pattern/mismatched_cells.h"
 #include "importer/pattern/pattern_picture.h"
 #include "importer/pattern/pattern_problem.h"
-#include "importer/pattern/unlike_cells.h"
 
 namespace velamap {
 namespace {
@@ -65,7 +65,7 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   // A cell of the other colour alone gives more.
   constexpr double kLargeRms = 0.05;  // of the contrast
   if (rms_gray > kLargeRms * ContrastOf(*problem, minimum)) {
-    refined->unlike_cells = UnlikeCells(*problem, minimum);
+    refined->mismatched_cells = MismatchedCells(*problem, minimum);
   }
   return refined;
 }

@@ -119,9 +119,10 @@ class PatternPicture {
     ComputeCellWeights(n * flat.v, blur_v, model_.num_cells,
                        {p[P::kMargin + 2], p[P::kMargin + 3], outline_shift * blur_v}, &v);
     Floats inner{};
-    Around around;
-    Blended pattern = BlendAll(
-        u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &around);
+    BlendedSurroundings surroundings;
+    Blended pattern =
+        BlendAll(u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner,
+                 &surroundings);
     if (model_.ink_spread_cells != 0 || model_.edge_shift_blurs != 0) {
       ApplySpread(blur_u, blur_v, &pattern);
     }
@@ -154,10 +155,10 @@ class PatternPicture {
     jacobian[P::kLight] = light * pattern.value;
     jacobian[P::kGradientX] = level * place_x;
     jacobian[P::kGradientY] = level * place_y;
-    jacobian[P::kSurround] = contrast * around.blended.value;
+    jacobian[P::kSurround] = contrast * surroundings.blended.value;
     jacobian[P::kInnerLight] = contrast * inner;
     for (std::size_t i = 0; i < 4; ++i) {
-      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * around.by_margin[i].groups[0];
+      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i].groups[0];
     }
     if (!model_.tone->IsLinear()) {
       for (Floats& derivative : jacobian) derivative *= slope;
@@ -241,7 +242,7 @@ class PatternPicture {
   }
 
   Blended BlendAll(const CellWeights& u, const CellWeights& v, Floats correlation_px,
-                   Floats* inner_value, Around* around) const {
+                   Floats* inner_value, BlendedSurroundings* surroundings) const {
     const int n = model_.num_cells;
     const Blended inner = BlendLight(model_.inner, u, v);
     *inner_value = inner.value;
@@ -250,8 +251,8 @@ class PatternPicture {
     Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
     AddCorrelation(correlation_px, &pattern);
     if (Reaches(1, u, n) || Reaches(1, v, n)) {
-      *around = BlendOutermost(model_.surround, u, v, n);
-      Add(AllLanes(parameters_[P::kSurround]), around->blended, &pattern);
+      *surroundings = BlendOutermost(model_.surround, u, v, n);
+      Add(AllLanes(parameters_[P::kSurround]), surroundings->blended, &pattern);
     }
     return pattern;
   }

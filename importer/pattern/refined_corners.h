@@ -21,7 +21,7 @@ struct RefinedCorners {
   // Of a fit of the whole marker: RMS of the residuals of all pixels, grey levels, and the cells
   // (column, row) that look as if they were of the other colour.
   double rms_gray = 0.0;
-  std::vector<cv::Point> unlike_cells{};
+  std::vector<cv::Point> mismatched_cells{};
 };
 
 // The noise of pixels from the residuals of a least-squares fit. Each pixel is weighted by the

@@ -13,8 +13,8 @@ ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
   constexpr double kClearlyBetter = 0.7;
   cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
   ReadMarker first{quad, RefineCorners(gray, quad.corners_px, cells, formation)};
-  if (!first.refined || first.refined->unlike_cells.empty()) return first;
-  for (const cv::Point& cell : first.refined->unlike_cells) {
+  if (!first.refined || first.refined->mismatched_cells.empty()) return first;
+  for (const cv::Point& cell : first.refined->mismatched_cells) {
     std::uint8_t& value = cells.at<std::uint8_t>(cell);
     value = value == 0 ? 255 : 0;
   }

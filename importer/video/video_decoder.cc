@@ -86,14 +86,14 @@ std::optional<VideoFrame> VideoDecoder::Next() {
   if (frame.pts != AV_NOPTS_VALUE) {
     const std::int64_t start = stream.start_time == AV_NOPTS_VALUE ? 0 : stream.start_time;
     const double time_s = static_cast<double>(frame.pts - start) * av_q2d(stream.time_base);
-    result.time_s = CountOn(time_s, frames_per_second);
+    result.time_s = TimeInOrder(time_s, frames_per_second);
   } else if (frames_per_second > 0) {
-    result.time_s = CountOn(result.number / frames_per_second, frames_per_second);
+    result.time_s = TimeInOrder(result.number / frames_per_second, frames_per_second);
   }
   return result;
 }
 
-double VideoDecoder::CountOn(double time_s, double frames_per_second) {
+double VideoDecoder::TimeInOrder(double time_s, double frames_per_second) {
   constexpr double kUnknownPeriod_s = 0.04;
   if (last_time_s_ && time_s + time_offset_s_ < *last_time_s_) {
     const double period_s = frames_per_second > 0 ? 1.0 / frames_per_second : kUnknownPeriod_s;

@@ -12,9 +12,9 @@ namespace velamap {
 
 struct VideoFrame {
   int number = 0;  // the number of frames that the decoder yields before it
-  // Since the video's start; correct for a variable frame rate, too. Not earlier than that of the
-  // frame before: where the file's times run backwards, such as behind a cut, they are counted on
-  // by the frame rate.
+  // Since the video's start; also correct for a variable frame rate. Never earlier than the time of
+  // the frame before: where the file's times run backwards, such as after a cut, they continue at
+  // the frame rate.
   std::optional<double> time_s;
   VideoPicture picture;  // turned as the metadata say: NumQuarterTurns()
   bool is_whole = true;  // false: the file is damaged there, or before, up to a key frame
@@ -54,8 +54,9 @@ class VideoDecoder {
   std::optional<VideoFrame> Next();
 
  private:
-  // The time, moved so that it is not before that of the last frame.
-  double CountOn(double time_s, double frames_per_second);
+  // `time_s` plus `time_offset_s_`, which grows where the result would be earlier than the last
+  // frame's time: the times then continue at the frame rate.
+  double TimeInOrder(double time_s, double frames_per_second);
 
   std::string path_;
   int num_threads_;
@@ -63,7 +64,7 @@ class VideoDecoder {
   int num_quarter_turns_ = 0;
   int next_number_ = 0;
   std::optional<double> last_time_s_;
-  double time_offset_s_ = 0.0;  // what the times have been counted on by
+  double time_offset_s_ = 0.0;  // added to the file's times so that they never run backwards
   bool has_frame_ = false;      // whether the next frame is decoded already
 };
 

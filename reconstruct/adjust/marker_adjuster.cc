@@ -66,7 +66,7 @@ void MarkerAdjuster::PrepareSeed() {
       SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
   RemoveSeedOutliers({}, &solution_.model, &summary_.removed);
   RemoveUnderconstrainedParts();
-  TransformModel({MedianScale(MakeMarkerState(solution_.model, *solution_.layout)),
+  TransformModel({MetresPerUnit(MakeMarkerState(solution_.model, *solution_.layout)),
                   Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()},
                  &solution_.model);
   MoveToFirstCamera(&solution_.model);

@@ -25,7 +25,7 @@ constexpr double kMaxSingleLogScale = 0.07;
 // the side) and 2.54 (inches taken for centimetres, the smallest mistake of unit).
 constexpr double kMaxCommonScale = 2.25;
 
-std::string PointName(int marker_id, int corner) {
+std::string PointText(int marker_id, int corner) {
   return corner == 0 ? fmt::format("the centre of marker {}", marker_id)
                      : fmt::format("corner {} of marker {}", corner, marker_id);
 }
@@ -143,8 +143,8 @@ Consensus FindConsensus(const LogScales& scales, double print_scale_sigma) {
 }
 
 std::string NameOf(const KnownDistance& distance) {
-  return fmt::format("the distance from {} to {}", PointName(distance.marker_id1, distance.corner1),
-                     PointName(distance.marker_id2, distance.corner2));
+  return fmt::format("the distance from {} to {}", PointText(distance.marker_id1, distance.corner1),
+                     PointText(distance.marker_id2, distance.corner2));
 }
 
 // The bar against the length that others give it, with their difference in m and in sigmas.

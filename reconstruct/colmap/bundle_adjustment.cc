@@ -172,7 +172,7 @@ void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_p
 void CheckRefinableDistortion(const BundleAdjustmentOptions& options, const Model& model) {
   if (!options.refine_extra_params) return;
   for (const auto& [camera_id, camera] : model.cameras) {
-    if (!HasUnnamedDistortion(camera)) continue;
+    if (!HasUnspecifiedDistortion(camera)) continue;
     throw InputError(
         fmt::format("{} 1: COLMAP would also free the parameters of camera {} ({}) that are zero "
                     "in the calibration, and they would diverge; use --backend markers or both, "

@@ -167,7 +167,7 @@ void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgem
     }
     if (nearest_m <= kGross * extent_m + kNumSigmas * marker->sigma_m) continue;
     evidence->Drop(marker->marker_id,
-                   fmt::format("stands at least {:.2f} m from every other marker{}, and these are "
+                   fmt::format("is at least {:.2f} m from every other marker{}, and these are "
                                "within {:.2f} m of each other",
                                nearest_m, ids_of_part.empty() ? "" : " of its part", extent_m) +
                        SeenText(*marker));

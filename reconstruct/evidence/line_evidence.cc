@@ -67,17 +67,17 @@ double CostAtEnd(const std::vector<LinePoint>& points, std::size_t idx, std::siz
 }
 
 // Ascending indices of the points on the cheapest path, by dynamic programming.
-std::vector<std::size_t> CheapestWay(const std::vector<LinePoint>& points, double step_m) {
+std::vector<std::size_t> CheapestPath(const std::vector<LinePoint>& points, double step_m) {
   const std::size_t num = points.size();
   std::vector<double> cost(num, 0.0);  // of the cheapest path that ends at each point
   std::vector<std::size_t> previous(num, num);
   for (std::size_t j = 0; j < num; ++j) {
     for (std::size_t d = 0; d < j; ++d) cost[j] += CostAtEnd(points, d, d + 1, step_m);
     for (std::size_t i = j; i-- > 0;) {
-      double by_way = cost[i] + LinkCost(points[i], points[j], step_m);
-      for (std::size_t d = i + 1; d < j; ++d) by_way += CostBetween(points, i, j, d, step_m);
-      if (by_way >= cost[j]) continue;
-      cost[j] = by_way;
+      double by_path = cost[i] + LinkCost(points[i], points[j], step_m);
+      for (std::size_t d = i + 1; d < j; ++d) by_path += CostBetween(points, i, j, d, step_m);
+      if (by_path >= cost[j]) continue;
+      cost[j] = by_path;
       previous[j] = i;
     }
   }
@@ -90,17 +90,17 @@ std::vector<std::size_t> CheapestWay(const std::vector<LinePoint>& points, doubl
     }
     if (j > 0) beyond += CostAtEnd(points, j, j - 1, step_m);
   }
-  std::vector<std::size_t> way;
-  for (std::size_t j = last; j < num; j = previous[j]) way.push_back(j);
-  std::reverse(way.begin(), way.end());
-  return way;
+  std::vector<std::size_t> path;
+  for (std::size_t j = last; j < num; j = previous[j]) path.push_back(j);
+  std::reverse(path.begin(), path.end());
+  return path;
 }
 
 std::vector<double> StepsAlong(const std::vector<LinePoint>& points,
-                               const std::vector<std::size_t>& way) {
+                               const std::vector<std::size_t>& path) {
   std::vector<double> steps_m;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    steps_m.push_back(StepBetween(points[way[i - 1]], points[way[i]]));
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    steps_m.push_back(StepBetween(points[path[i - 1]], points[path[i]]));
   }
   return steps_m;
 }
@@ -132,7 +132,7 @@ double EstimateStep(const std::vector<LinePoint>& points) {
   // points give the step.
   const std::vector<double> near_steps_m = NearSteps(points);
   const std::vector<double> kept_m =
-      StepsAlong(points, CheapestWay(points, near_steps_m[near_steps_m.size() / 4]));
+      StepsAlong(points, CheapestPath(points, near_steps_m[near_steps_m.size() / 4]));
   return UsualStep(kept_m.empty() ? near_steps_m : kept_m);
 }
 
@@ -148,25 +148,25 @@ std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, d
   // out confirm each other at a larger distance.
   constexpr double kUnevenInPiece = 3.0;
   if (points.size() < kMinPointsOnLine || !(step_m > 0)) return {};
-  const std::vector<std::size_t> way = CheapestWay(points, step_m);
-  const auto is_on_way = [&way](std::size_t idx) {
-    return std::binary_search(way.begin(), way.end(), idx);
+  const std::vector<std::size_t> path = CheapestPath(points, step_m);
+  const auto is_on_path = [&path](std::size_t idx) {
+    return std::binary_search(path.begin(), path.end(), idx);
   };
   // Whether the nearest kept point on either side confirms the point, or a neighbour that is left
   // out as well does.
   const auto is_confirmed = [&](std::size_t idx) {
     const LinePoint& point = points[idx];
-    const auto after = std::lower_bound(way.begin(), way.end(), idx);
-    return (after != way.end() && AreWithinSteps(point, points[*after], step_m)) ||
-           (after != way.begin() && AreWithinSteps(points[*std::prev(after)], point, step_m)) ||
-           (idx > 0 && !is_on_way(idx - 1) &&
+    const auto after = std::lower_bound(path.begin(), path.end(), idx);
+    return (after != path.end() && AreWithinSteps(point, points[*after], step_m)) ||
+           (after != path.begin() && AreWithinSteps(points[*std::prev(after)], point, step_m)) ||
+           (idx > 0 && !is_on_path(idx - 1) &&
             AreWithinSteps(points[idx - 1], point, step_m, kUnevenInPiece)) ||
-           (idx + 1 < points.size() && !is_on_way(idx + 1) &&
+           (idx + 1 < points.size() && !is_on_path(idx + 1) &&
             AreWithinSteps(point, points[idx + 1], step_m, kUnevenInPiece));
   };
   std::vector<std::size_t> stray_idxs;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_on_way(i) && !is_confirmed(i)) stray_idxs.push_back(i);
+    if (!is_on_path(i) && !is_confirmed(i)) stray_idxs.push_back(i);
   }
   if (2 * stray_idxs.size() >= points.size()) return {};
   return stray_idxs;

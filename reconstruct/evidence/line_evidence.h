@@ -1,5 +1,5 @@
-// Finds the markers that are not on their line of the layout. They are the markers that the
-// cheapest path along the line leaves out. A path costs the distance from each kept marker to the
+// Finds the markers that are not on their line of the layout: those that the cheapest path along
+// the line leaves out. A path costs the distance from each kept marker to the
 // next one, plus a price, in steps of the line, for each marker that is left out.
 //
 // A step is the distance between neighbours. However cloth is bent, folded or rolled up, neighbours

@@ -12,7 +12,7 @@ constexpr double kMaxTimesNearest = 2.5;
 
 }  // namespace
 
-std::vector<MarkerChain> FindClusters(const std::vector<StandingMarker>& markers,
+std::vector<MarkerChain> FindClusters(const std::vector<OrientedMarker>& markers,
                                       const MarkerChain& rest) {
   std::vector<double> nearest(rest.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < rest.size(); ++i) {

@@ -28,7 +28,7 @@ constexpr double kMaxBend = 35.0 * kRadPerDeg, kMaxBendAtGap = 25.0 * kRadPerDeg
 // are uneven.
 constexpr double kMaxGap = 3.6;
 
-bool FaceTheSameWay(const StandingMarker& a, const StandingMarker& b) {
+bool FaceTheSameWay(const OrientedMarker& a, const OrientedMarker& b) {
   return a.normal.dot(b.normal) > kSameFace;
 }
 
@@ -40,7 +40,7 @@ bool AreLike(double a, double b) { return std::max(a, b) < kMaxStepRatio * std::
 
 class Linker {
  public:
-  explicit Linker(const std::vector<StandingMarker>& markers) : markers_(markers) { Link(); }
+  explicit Linker(const std::vector<OrientedMarker>& markers) : markers_(markers) { Link(); }
 
   // Chains without gaps.
   std::vector<MarkerChain> Chains() {
@@ -147,7 +147,7 @@ class Linker {
     return chain;
   }
 
-  const std::vector<StandingMarker>& markers_;
+  const std::vector<OrientedMarker>& markers_;
   std::vector<std::array<std::size_t, 2>> links_;
   std::vector<std::vector<std::size_t>> links_of_;  // by marker
   std::vector<std::array<std::size_t, 2>> next_;    // by link and end: the link that continues it
@@ -156,13 +156,13 @@ class Linker {
 
 // Where the next marker of a row is missing, a marker of the neighbouring row can seem to continue
 // it. Such a marker is off the straight line through the last two, `a` and `b`, by most of a step.
-bool IsBeside(const StandingMarker& a, const StandingMarker& b, const StandingMarker& next) {
+bool IsBeside(const OrientedMarker& a, const OrientedMarker& b, const OrientedMarker& next) {
   constexpr double kMaxSidestep = 0.6;  // of a step
   const Eigen::Vector3d step = b.center_m - a.center_m;
   return step.normalized().cross(next.center_m - b.center_m).norm() > kMaxSidestep * step.norm();
 }
 
-void TrimEnd(const std::vector<StandingMarker>& markers, MarkerChain* chain) {
+void TrimEnd(const std::vector<OrientedMarker>& markers, MarkerChain* chain) {
   const std::size_t num = chain->size();
   if (num < 3) return;
   if (IsBeside(markers[(*chain)[num - 3]], markers[(*chain)[num - 2]], markers[chain->back()])) {
@@ -177,7 +177,7 @@ MarkerChain Reversed(MarkerChain chain) {
 
 // The largest angle, rad, by which the row bends if `b` continues the end of `a`, or nothing if `b`
 // does not continue it.
-std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, const MarkerChain& a,
+std::optional<double> BendAtGap(const std::vector<OrientedMarker>& markers, const MarkerChain& a,
                                 const MarkerChain& b) {
   if (!FaceTheSameWay(markers[a.back()], markers[b.front()])) return std::nullopt;
   const Eigen::Vector3d gap = markers[b.front()].center_m - markers[a.back()].center_m;
@@ -197,7 +197,7 @@ std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, cons
 
 // Joins the two chains that continue each other with the smallest bend. Returns false if there are
 // none.
-bool BridgeOneGap(const std::vector<StandingMarker>& markers, std::vector<MarkerChain>* chains) {
+bool BridgeOneGap(const std::vector<OrientedMarker>& markers, std::vector<MarkerChain>* chains) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t best_a = 0, best_b = 0;
   MarkerChain joined;
@@ -225,10 +225,10 @@ bool BridgeOneGap(const std::vector<StandingMarker>& markers, std::vector<Marker
 
 }  // namespace
 
-std::vector<StandingMarker> StandingMarkers(const ShapePoints& shape) {
-  std::vector<StandingMarker> markers;
+std::vector<OrientedMarker> OrientedMarkers(const ShapePoints& shape) {
+  std::vector<OrientedMarker> markers;
   for (const auto& [marker_id, x] : shape) {
-    StandingMarker marker;
+    OrientedMarker marker;
     marker.marker_id = marker_id;
     marker.center_m = x[0];
     marker.right = (x[2] - x[1] + x[3] - x[4]).normalized();
@@ -245,11 +245,11 @@ bool ShareMarkers(const MarkerChain& a, const MarkerChain& b) {
   });
 }
 
-double Distance(const StandingMarker& a, const StandingMarker& b) {
+double Distance(const OrientedMarker& a, const OrientedMarker& b) {
   return (a.center_m - b.center_m).norm();
 }
 
-double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& chain) {
+double StepOf(const std::vector<OrientedMarker>& markers, const MarkerChain& chain) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < chain.size(); ++i) {
     steps.push_back(Distance(markers[chain[i - 1]], markers[chain[i]]));
@@ -257,7 +257,7 @@ double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& cha
   return Median(std::move(steps));
 }
 
-std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers) {
+std::vector<MarkerChain> FindChains(const std::vector<OrientedMarker>& markers) {
   std::vector<MarkerChain> chains = Linker(markers).Chains();
   for (MarkerChain& chain : chains) {
     TrimEnd(markers, &chain);

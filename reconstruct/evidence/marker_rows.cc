@@ -43,7 +43,7 @@ struct Row {
   bool is_vertical = false;
 };
 
-Eigen::Vector3d MeanCenter(const std::vector<StandingMarker>& markers, const MarkerChain& chain) {
+Eigen::Vector3d MeanCenter(const std::vector<OrientedMarker>& markers, const MarkerChain& chain) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const std::size_t i : chain) sum += markers[i].center_m;
   return sum / static_cast<double>(chain.size());
@@ -51,7 +51,7 @@ Eigen::Vector3d MeanCenter(const std::vector<StandingMarker>& markers, const Mar
 
 class RowFinder {
  public:
-  explicit RowFinder(const ShapePoints& shape) : markers_(StandingMarkers(shape)) {}
+  explicit RowFinder(const ShapePoints& shape) : markers_(OrientedMarkers(shape)) {}
 
   std::vector<RowGroup> Find() {
     std::vector<Row> short_rows;
@@ -264,7 +264,7 @@ class RowFinder {
     std::sort(group->others.begin(), group->others.end());
   }
 
-  std::vector<StandingMarker> markers_;  // by ascending id
+  std::vector<OrientedMarker> markers_;  // by ascending id
   std::vector<Row> rows_;
   std::vector<std::size_t> group_of_row_;
   std::set<std::size_t> joined_by_likeness_;  // groups

@@ -36,7 +36,7 @@ std::vector<RivalPair> RivalPairs(const MarkersById& markers) {
 
 std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
   return fmt::format(
-      "a misread id: it stands where marker {} stands, seen there in {} images and "
+      "a misread id: it is where marker {} is, seen there in {} images and "
       "marker {} in {}",
       rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
 }

@@ -48,8 +48,8 @@ std::vector<const MarkerDetection*> NotInLayout(const FrameDetections& detection
   return markers;
 }
 
-bool StandsWhereAnotherDoes(const MarkerDetection& marker,
-                            const std::vector<Eigen::Vector2d>& middles_px) {
+bool CoincidesWithAnother(const MarkerDetection& marker,
+                          const std::vector<Eigen::Vector2d>& middles_px) {
   const Eigen::Vector2d middle_px = CornerMean(marker);
   const double radius_px = (marker.corners_in_image_px[0] - middle_px).norm();
   return std::any_of(middles_px.begin(), middles_px.end(), [&](const Eigen::Vector2d& other) {
@@ -69,7 +69,7 @@ std::vector<int> FindUnnamedMarkers(const std::vector<DatabaseImage>& images, co
     if (in_model == nullptr) continue;
     const std::vector<Eigen::Vector2d> middles_px = MarkersInImage(model, *in_model);
     for (const MarkerDetection* marker : markers) {
-      if (StandsWhereAnotherDoes(*marker, middles_px)) continue;
+      if (CoincidesWithAnother(*marker, middles_px)) continue;
       seen_in[marker->marker_id].insert(image.image_id);
     }
   }

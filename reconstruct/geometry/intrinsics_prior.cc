@@ -81,7 +81,7 @@ bool ChangesPixelShape(const IntrinsicsPrior& prior, const Camera& refined) {
   return std::abs(x - y) > kClearly * prior.sigmas[0] / prior.mean[0];
 }
 
-bool IsUnnamed(const Camera& calibration, int index) {
+bool IsUnspecified(const Camera& calibration, int index) {
   return calibration.model == CameraModel::kFullOpenCV && index >= 4 &&
          calibration.params[static_cast<std::size_t>(index)] == 0.0;
 }
@@ -103,7 +103,7 @@ IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrins
                                                                      prior.max_ray_length));
     const bool is_free = i < num_focal    ? free.focal_length
                          : distortion < 0 ? free.principal_point
-                                          : free.distortion && !IsUnnamed(calibration, i);
+                                          : free.distortion && !IsUnspecified(calibration, i);
     (is_free ? prior.free : prior.held).push_back(i);
   }
   return prior;
@@ -142,9 +142,9 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   return prior;
 }
 
-bool HasUnnamedDistortion(const Camera& calibration) {
+bool HasUnspecifiedDistortion(const Camera& calibration) {
   for (int i = 0; i < static_cast<int>(calibration.params.size()); ++i) {
-    if (IsUnnamed(calibration, i)) return true;
+    if (IsUnspecified(calibration, i)) return true;
   }
   return false;
 }

@@ -58,8 +58,9 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera);
 // calibration. It is small because sensors have square pixels.
 constexpr double kPixelShapeSigma = 1e-3;
 
-// Whether the calibration has distortion parameters that its file does not give.
-bool HasUnnamedDistortion(const Camera& calibration);
+// Whether the calibration has distortion parameters that its file does not give: those of a
+// FULL_OPENCV camera that are zero.
+bool HasUnspecifiedDistortion(const Camera& calibration);
 
 // Adds distortion parameters of zero to a pinhole camera: PINHOLE becomes OPENCV, and
 // SIMPLE_PINHOLE becomes SIMPLE_RADIAL. Returns other cameras unchanged.

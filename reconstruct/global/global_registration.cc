@@ -236,10 +236,10 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
         "the errors of the registered map ({:.2f} px) are larger than the noise of the corners "
         "({:.2f} px) explains: the shape may be wrong, or the surface moved; take views from "
         "more directions",
-        global.noise.sigma_px, global.noise.alone_sigma_px));
+        global.noise.sigma_px, global.noise.single_marker_sigma_px));
   }
   LogDebug("noise of the map {:.3f} px, of single markers {:.3f} px", global.noise.sigma_px,
-           global.noise.alone_sigma_px);
+           global.noise.single_marker_sigma_px);
   int central_idx = ChooseCentralFrame(global);
   if (global.central_image_idx >= 0) {
     const auto named = std::find(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(),

@@ -11,7 +11,7 @@ namespace {
 // Transforms the solution to the camera of the central frame, and to metres by the median marker.
 void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   MapSolution& solution = global->solution;
-  const double scale = 1 / global->MedianScale();
+  const double scale = 1 / global->MedianMarkerScale();
   const Rigid3 central = *solution.cam_from_shape[static_cast<std::size_t>(central_idx)];
   for (auto& pose : solution.cam_from_shape) {
     if (!pose) continue;

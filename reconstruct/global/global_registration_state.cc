@@ -18,7 +18,7 @@ int GlobalRegistration::NumFitsInFrame(int frame_idx) const {
   return count;
 }
 
-double GlobalRegistration::MedianScale() const {
+double GlobalRegistration::MedianMarkerScale() const {
   std::vector<double> scales;
   for (std::size_t idx = 0; idx < problem.markers.size(); ++idx) {
     if (NumFits(static_cast<int>(idx)) >= 2) {

@@ -34,7 +34,7 @@ struct GlobalRegistration {
   }
   int NumFits(int marker_idx) const;  // observations of the marker that fit
   int NumFitsInFrame(int frame_idx) const;
-  double MedianScale() const;  // over the markers that at least two frames see
+  double MedianMarkerScale() const;  // over the markers that fit at least two frames
   // Remove a frame or a marker from the solution.
   void LeaveOut(int frame_idx, const std::string& reason);
   void Drop(int marker_idx, const std::string& reason);

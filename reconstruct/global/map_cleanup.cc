@@ -124,7 +124,7 @@ void VoteOnIds(GlobalRegistration* global) {
 }
 
 void DropWrongSizes(GlobalRegistration* global) {
-  const double median_scale = global->MedianScale();
+  const double median_scale = global->MedianMarkerScale();
   for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
     const auto& places = global->solution.shape_from_marker[idx];
     if (places.empty()) continue;
@@ -139,7 +139,7 @@ void DropWrongSizes(GlobalRegistration* global) {
 }
 
 bool DropContradictions(const Layout& layout, GlobalRegistration* global) {
-  const double m_per_unit = 1 / global->MedianScale();
+  const double m_per_unit = 1 / global->MedianMarkerScale();
   std::vector<PlacedMarker> markers;
   std::map<int, int> marker_idx_of;
   for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {

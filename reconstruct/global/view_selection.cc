@@ -60,11 +60,11 @@ double LogDeterminant(const Eigen::Matrix3d& information) {
 std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& images,
                                        int max_num_frames) {
   std::vector<int> chosen;
-  const std::size_t num_slots =
+  const std::size_t num_stretches =
       std::min(images.size(), static_cast<std::size_t>(std::max(max_num_frames, 0)));
-  for (std::size_t slot = 0; slot < num_slots; ++slot) {
-    const std::size_t begin = slot * images.size() / num_slots;
-    const std::size_t end = (slot + 1) * images.size() / num_slots;
+  for (std::size_t stretch = 0; stretch < num_stretches; ++stretch) {
+    const std::size_t begin = stretch * images.size() / num_stretches;
+    const std::size_t end = (stretch + 1) * images.size() / num_stretches;
     const auto best = std::max_element(images.begin() + static_cast<std::ptrdiff_t>(begin),
                                        images.begin() + static_cast<std::ptrdiff_t>(end),
                                        [](const DatabaseImage* a, const DatabaseImage* b) {

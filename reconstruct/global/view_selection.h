@@ -8,7 +8,7 @@
 
 namespace velamap {
 
-// Selection before the registration: divides the video into max_num_frames intervals of equal
+// Selection before the registration: divides the images into `max_num_frames` stretches of equal
 // length and takes from each the frame with most markers, where blurred markers count less. Indices
 // ascend.
 std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& images,

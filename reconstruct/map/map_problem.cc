@@ -44,7 +44,7 @@ std::optional<MapObservation> Observe(const MarkerDetection& detection, const Ca
   for (const MarkerPose& pose : poses) {
     observation.cam_from_marker.push_back(pose.cam_from_marker);
   }
-  observation.alone_error_px = poses.front().rms_error_px;
+  observation.single_marker_error_px = poses.front().rms_error_px;
   observation.sigma_px = SigmaPx(detection, observation.side_px);
   return observation;
 }

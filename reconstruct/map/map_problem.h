@@ -27,7 +27,7 @@ struct MapObservation {
   double sigma_px = 0.0;                                 // of a coordinate of a corner
   double side_px = 0.0;                                  // mean length of a side in the image
   std::vector<Rigid3> cam_from_marker;  // from this observation alone: one or two, the better first
-  double alone_error_px = 0.0;          // RMS over the corners of the better one
+  double single_marker_error_px = 0.0;  // RMS over the corners in the better of these poses
 };
 
 struct MapFrame {

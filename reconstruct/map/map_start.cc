@@ -104,14 +104,14 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
   // Depths from the first frame alone are poor.
   constexpr double kToleranceOfOneFrame = 4.0;
   const auto [first, second] = pair;
-  MapSolution alone = EmptySolution(problem);
-  alone.cam_from_shape[static_cast<std::size_t>(first)] = Rigid3{};
+  MapSolution from_first = EmptySolution(problem);
+  from_first.cam_from_shape[static_cast<std::size_t>(first)] = Rigid3{};
   std::set<int> in_first, in_both;
   for (const int idx : problem.Frame(first).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
     in_first.insert(observation.marker_idx);
     for (const Rigid3& cam_from_marker : observation.cam_from_marker) {
-      alone.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].push_back(
+      from_first.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].push_back(
           {1.0, cam_from_marker.rotation, cam_from_marker.translation});
     }
   }
@@ -128,7 +128,7 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
     best = solution;
   };
   for (const PoseHypothesis& hypothesis :
-       ResectFrame(problem, alone, second, kToleranceOfOneFrame, random_seed)) {
+       ResectFrame(problem, from_first, second, kToleranceOfOneFrame, random_seed)) {
     MapSolution solution = EmptySolution(problem);
     solution.cam_from_shape[static_cast<std::size_t>(first)] = Rigid3{};
     solution.cam_from_shape[static_cast<std::size_t>(second)] = hypothesis.cam_from_shape;

@@ -115,7 +115,7 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
 MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
   MapNoise noise;
   noise.factor_of_frame.assign(problem.frames.size(), 0.0);
-  std::vector<double> relative, errors_px, alone_px;
+  std::vector<double> relative, errors_px, single_marker_px;
   std::vector<std::vector<double>> relative_of_frame(problem.frames.size());
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
     if (!solution.fits[idx]) continue;
@@ -123,14 +123,15 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
     const double error_px = ReprojectionError(problem, solution, observation);
     relative.push_back(error_px / observation.sigma_px);
     errors_px.push_back(error_px);
-    alone_px.push_back(observation.alone_error_px);
+    single_marker_px.push_back(observation.single_marker_error_px);
     relative_of_frame[static_cast<std::size_t>(observation.frame_idx)].push_back(relative.back());
   }
   if (relative.empty()) return noise;
   // A marker at a known place has 8 degrees of freedom, and 2 after a fit of its pose.
   noise.factor = SigmaFromMedian(Median(std::move(relative)), kChiSquaredMedian8);
   noise.sigma_px = SigmaFromMedian(Median(std::move(errors_px)), kChiSquaredMedian8);
-  noise.alone_sigma_px = SigmaFromMedian(Median(std::move(alone_px)), kChiSquaredMedian2);
+  noise.single_marker_sigma_px =
+      SigmaFromMedian(Median(std::move(single_marker_px)), kChiSquaredMedian2);
   for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
     if (relative_of_frame[idx].empty()) continue;
     noise.factor_of_frame[idx] =
@@ -160,7 +161,7 @@ void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution
 bool IsSuspicious(const MapNoise& noise) {
   // The errors of a right shape are within twice the noise of the corners, lens and cloth included.
   constexpr double kRatio = 4.0, kNegligiblePx = 0.25;
-  return noise.sigma_px > kNegligiblePx && noise.sigma_px > kRatio * noise.alone_sigma_px;
+  return noise.sigma_px > kNegligiblePx && noise.sigma_px > kRatio * noise.single_marker_sigma_px;
 }
 
 std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
@@ -176,7 +177,7 @@ std::string OutlierReason(const MapProblem& problem, const MapSolution& solution
     if (ReprojectionError(problem, as_other, pose, solution.shape_from_marker[other_idx].front()) <=
         tolerance_px) {
       return "wrong id: marker " + std::to_string(problem.markers[other_idx].marker_id) +
-             " stands there";
+             " is there";
     }
   }
   MapObservation turned = observation;

@@ -19,7 +19,7 @@ struct MapNoise {
   // the corners and does not depend on the shape; the noise of the map is larger if the shape is
   // wrong or the surface moved.
   double sigma_px = 0.0;
-  double alone_sigma_px = 0.0;
+  double single_marker_sigma_px = 0.0;
 };
 
 // Estimates the noise from the observations that fit.

@@ -24,7 +24,7 @@ std::string WhatToCheck(const MarkerSize& size, double deviation) {
 
 }  // namespace
 
-double MedianScale(const MarkerState& state) {
+double MetresPerUnit(const MarkerState& state) {
   std::vector<double> scales;
   for (const MarkerBlock& marker : state.markers) {
     for (const auto& [a, b] : MarkerPriorError::Sides(marker.corners)) {

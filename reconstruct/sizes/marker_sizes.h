@@ -14,9 +14,9 @@
 
 namespace velamap {
 
-// Metres per unit of the state: the median over all marker sides of the printed length divided by
-// the reconstructed one. Throws DataError if no side has both of its corners.
-double MedianScale(const MarkerState& state);
+// The factor from the state's unit to metres: the median over all marker sides of the printed
+// length divided by the reconstructed one. Throws DataError if no side has both of its corners.
+double MetresPerUnit(const MarkerState& state);
 
 struct MarkerSizeVerdict {
   std::set<int> contradicting;   // marker ids

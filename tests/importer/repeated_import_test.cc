@@ -79,8 +79,8 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
     options_.num_threads = num_threads;
     const ImportReport report = ImportMarkers(options_);
     EXPECT_EQ(report.num_markers, 40 * 4 + 30 * 2);
-    EXPECT_EQ(report.prior_shape.num_agreeing, report.prior_shape.num_known);
-    EXPECT_GT(report.prior_shape.num_agreeing, 40 * 4);
+    EXPECT_EQ(report.prior_shape_agreement.num_agreeing, report.prior_shape_agreement.num_known);
+    EXPECT_GT(report.prior_shape_agreement.num_agreeing, 40 * 4);
     std::ifstream stream(options_.database_path, std::ios::binary);
     const std::string now(std::istreambuf_iterator<char>(stream), {});
     if (num_threads == 1) bytes = now;

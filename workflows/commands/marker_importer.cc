@@ -92,8 +92,9 @@ void Print(const ImportReport& report, const PathOptions& paths, std::ostream& o
                      ? "none"
                      : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
   if (!paths.prior_shape_path.empty()) {
-    WriteFormatted(out, "markers_of_prior_shape: {}\n", report.prior_shape.num_known);
-    WriteFormatted(out, "markers_agreeing_with_prior_shape: {}\n", report.prior_shape.num_agreeing);
+    WriteFormatted(out, "markers_of_prior_shape: {}\n", report.prior_shape_agreement.num_known);
+    WriteFormatted(out, "markers_agreeing_with_prior_shape: {}\n",
+                   report.prior_shape_agreement.num_agreeing);
   }
   WriteFormatted(out, "pairs_with_matches: {}\n", report.num_pairs);
   WriteFormatted(out, "database_path: {}\n", paths.database_path);

@@ -125,7 +125,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
             report.num_fallbacks);
   }
   if (!options.prior_shape.empty() && report.num_frames_read > 0)
-    LogPriorShapeAgreement(report.prior_shape);
+    LogPriorShapeAgreement(report.prior_shape_agreement);
   if (!report.ids_not_in_layout.empty()) {
     LogInfo("ids that the layout does not name, or that were misread: {}",
             fmt::join(report.ids_not_in_layout, " "));

@@ -21,14 +21,14 @@ Camera FiveCoefficients() {
 
 TEST(IntrinsicsPrior, ParametersThatTheCalibrationDoesNotNameAreHeld) {
   EXPECT_THAT(MakeIntrinsicsPrior(FiveCoefficients(), kAll, 0.01).held, ElementsAre(9, 10, 11));
-  EXPECT_TRUE(HasUnnamedDistortion(FiveCoefficients()));
+  EXPECT_TRUE(HasUnspecifiedDistortion(FiveCoefficients()));
   Camera rational = FiveCoefficients();
   for (const std::size_t i : {9, 10, 11}) rational.params[i] = 0.1;
   EXPECT_THAT(MakeIntrinsicsPrior(rational, kAll, 0.01).held, IsEmpty());
-  EXPECT_FALSE(HasUnnamedDistortion(rational));
+  EXPECT_FALSE(HasUnspecifiedDistortion(rational));
   const Camera without{CameraModel::kOpenCV, 1920, 1080, {1400, 1410, 960, 540, 0, 0, 0, 0}};
   EXPECT_THAT(MakeIntrinsicsPrior(without, kAll, 0.01).held, IsEmpty());
-  EXPECT_FALSE(HasUnnamedDistortion(without));
+  EXPECT_FALSE(HasUnspecifiedDistortion(without));
   EXPECT_THAT(MakeIntrinsicsPrior(FiveCoefficients(), {false, true, false}, 0.01).free,
               ElementsAre(2, 3));
 }

@@ -105,7 +105,7 @@ TEST(GlobalRegistration, RecurringFalseSquareIsOutvoted) {
   EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
   EXPECT_LT(RmsError(registration, scene), 0.001);
   EXPECT_THAT(OutlierReasons(registration),
-              testing::Contains(testing::StrEq("wrong id: marker 21 stands there")));
+              testing::Contains(testing::StrEq("wrong id: marker 21 is there")));
 }
 
 TEST(GlobalRegistration, IdAtTwoPlacesWithEqualSupportIsLeftOut) {

@@ -177,7 +177,7 @@ TEST(DropContradictions, MisreadIdAtThePlaceOfAnotherMarkerGoes) {
   DropContradictions(Layout(), &grown.global);
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(7));
   EXPECT_THAT(grown.global.dropped_markers.begin()->second.reason,
-              HasSubstr("a misread id: it stands where marker 21 stands"));
+              HasSubstr("a misread id: it is where marker 21 is"));
 }
 
 TEST(DropUnsupported, GoesOnUntilAllThatIsLeftHasEnough) {

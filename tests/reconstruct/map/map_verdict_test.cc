@@ -21,7 +21,7 @@ TEST(EstimateNoise, IsZeroForExactCorners) {
   const MapNoise noise = EstimateNoise(map.problem, map.TrueSolution());
   EXPECT_LT(noise.sigma_px, 1e-6);
   EXPECT_LT(noise.factor, 1e-5);
-  EXPECT_LT(noise.alone_sigma_px, 1e-6);
+  EXPECT_LT(noise.single_marker_sigma_px, 1e-6);
 }
 
 class NoiseOfMap : public testing::TestWithParam<double> {};
@@ -33,7 +33,7 @@ TEST_P(NoiseOfMap, IsThatOfTheCorners) {
   // Medians over some 400 observations of 8 coordinates: a sigma of 2 %, alone (of 2) of 5 %.
   EXPECT_NEAR(noise.sigma_px / sigma_px, 1.0, 0.08);
   EXPECT_NEAR(noise.factor, 1.0, 0.08);
-  EXPECT_NEAR(noise.alone_sigma_px / sigma_px, 1.0, 0.3);
+  EXPECT_NEAR(noise.single_marker_sigma_px / sigma_px, 1.0, 0.3);
   for (const double factor : noise.factor_of_frame) EXPECT_NEAR(factor, 1.0, 0.4);
 }
 
@@ -139,10 +139,10 @@ TEST(MarkFinalFits, KeepsGoodCornersAndNothingElse) {
 }
 
 TEST(IsSuspicious, ComparesTheMapWithSingleMarkers) {
-  const auto noise_of = [](double sigma_px, double alone_sigma_px) {
+  const auto noise_of = [](double sigma_px, double single_marker_sigma_px) {
     MapNoise noise;
     noise.sigma_px = sigma_px;
-    noise.alone_sigma_px = alone_sigma_px;
+    noise.single_marker_sigma_px = single_marker_sigma_px;
     return noise;
   };
   EXPECT_FALSE(IsSuspicious(noise_of(0.4, 0.4)));
@@ -179,7 +179,7 @@ TEST_F(WhyOutlierTest, IdOfAnotherMarker) {
   EXPECT_EQ(Why([](MarkerDetection* marker, MarkerDetection* other) {
               std::swap(marker->corners_in_image_px, other->corners_in_image_px);
             }),
-            "wrong id: marker 15 stands there");
+            "wrong id: marker 15 is there");
 }
 
 TEST_F(WhyOutlierTest, TurnedCorners) {

@@ -1,4 +1,4 @@
-#include "importer/pattern/unlike_cells.h"
+#include "importer/pattern/mismatched_cells.h"
 
 #include <cstdint>
 
@@ -7,15 +7,15 @@
 
 namespace velamap {
 
-VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(const PatternProblem& problem,
-                                                          const PatternMinimum& minimum) {
-  constexpr double kUnlike = 0.25;  // of the contrast
-  const double limit_gray = kUnlike * ContrastOf(problem, minimum);
+VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> MismatchedCells(const PatternProblem& problem,
+                                                              const PatternMinimum& minimum) {
+  constexpr double kMismatch = 0.25;  // of the contrast
+  const double limit_gray = kMismatch * ContrastOf(problem, minimum);
   const PatternParameters::Vector& parameters = minimum.parameters;
   const PatternPicture picture(problem.model, parameters);
   const UnitSquareMap map(CornersOf(parameters));
   const int n = problem.model.num_cells;
-  std::vector<cv::Point> unlike;
+  std::vector<cv::Point> mismatched;
   PatternPixels modelled;
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
@@ -27,10 +27,12 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(const PatternProblem& 
       picture.At(AllLanes(place.x()), AllLanes(place.y()), &modelled);
       const double excess_gray = InterpolatePatch(problem.patch, x_px) - modelled.gray[0];
       const bool is_light = problem.cells.at<std::uint8_t>(row, column) != 0;
-      if ((is_light ? -excess_gray : excess_gray) > limit_gray) unlike.emplace_back(column, row);
+      if ((is_light ? -excess_gray : excess_gray) > limit_gray) {
+        mismatched.emplace_back(column, row);
+      }
     }
   }
-  return unlike;
+  return mismatched;
 }
 
 }  // namespace velamap
