@@ -20,8 +20,8 @@ struct DictionaryHint {
 };
 
 // Tries all predefined dictionaries in both polarities, without error correction. Returns at most
-// three with two or more detections that are unlikely to be chance, in descending order. Stops
-// early when one has detected many.
+// three, by descending number of detections: those with two or more detections that are unlikely to
+// be chance. Leaves out the remaining images once a dictionary has detected many markers.
 std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
                                                 int border_bits,
                                                 const ArucoDetectionOptions& options);

@@ -8,9 +8,10 @@
 
 namespace velamap {
 
-// The calibration for the frame's size; for a photograph that EXIF calls turned, of either
-// orientation. Without a calibration UnknownCamera(), with the focal length that EXIF claims.
-// Throws InputError, naming the image, for a calibration of another aspect ratio. Thread-safe.
+// The calibration, scaled to the frame's size. Where the calibration is for upright pictures and
+// the pixels of a photograph are stored on their side, it is turned as EXIF says. Without a
+// calibration, UnknownCamera() with the focal length that EXIF claims. Throws InputError, naming
+// the image, for a calibration of another aspect ratio. Thread-safe.
 Camera CameraOfFrame(const MarkerImporterOptions& options, bool is_video, const Frame& frame);
 
 // Whether `camera` is what CameraOfFrame() returns for some frame with the calibration of

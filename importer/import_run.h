@@ -30,7 +30,8 @@ class ImportRun {
   FrameResult Process(int frame_idx, Frame* frame);
   void Consume(const FrameResult& result);
 
-  // Commits the last batch. Throws if the run found nothing. `cpu_s` is the CPU time that the whole
+  // Commits the last batch. Throws InputError if no frame could be read, and DataError if none or
+  // hardly any markers were found (CheckMarkersFound()). `cpu_s` is the CPU time that the whole
   // program has spent on the frames, with `num_threads` threads.
   ImportReport Finish(double cpu_s, int num_threads);
 

@@ -6,7 +6,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kBatchSize = 50;  // images a transaction
+constexpr int kBatchSize = 50;  // images per transaction
 
 }  // namespace
 

@@ -29,8 +29,9 @@ struct ConsensusPose {
 };
 
 // RANSAC with P3P over corners of three markers each, then Levenberg-Marquardt on all corners of
-// the markers that agree: those whose corners all project to within a side of the marker. Returns
-// nothing unless at least four markers and half of all agree. Same input, same result.
+// the markers that agree: those whose corners all project to within the mean length of the marker's
+// sides in the image. Returns nothing unless at least four markers and half of all agree. The same
+// input gives the same result.
 std::optional<ConsensusPose> FindConsensusPose(std::vector<MarkerRays> markers);
 
 }  // namespace velamap

@@ -6,9 +6,9 @@
 
 namespace velamap {
 
-// cam_from_world of a camera at `position` that looks at `target`, with `up` of the world upwards
-// in its picture, and that is then turned by `roll_rad` about its optical axis. It must not look
-// along `up`.
+// cam_from_world of a camera at `position` that looks at `target` and is turned about its optical
+// axis by `roll_rad` from the pose in which the world's `up` points upwards in its picture. It must
+// not look along `up`.
 inline Rigid3 LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target,
                      double roll_rad = 0.0, const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
   const Eigen::Vector3d forward = (target - position).normalized();

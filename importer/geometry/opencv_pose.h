@@ -1,4 +1,4 @@
-// OpenCV's poses as ours.
+// Converts poses from OpenCV.
 
 #pragma once
 
@@ -8,6 +8,7 @@
 
 namespace velamap {
 
+// Both arguments are 3 x 1, CV_64F; the rotation vector is in rad.
 inline Rigid3 RigidFromOpenCV(const cv::Mat& rotation_vector, const cv::Mat& translation) {
   PoseStep step;
   for (int i = 0; i < 3; ++i) {

@@ -14,8 +14,9 @@
 
 namespace velamap {
 
-// cam_from_world: at most four, all finite, by cv::solveP3P with AP3P. `rays` are (x/z, y/z) in the
-// cam frame.
+// Up to four cam_from_world, all finite, by AP3P (Ke and Roumeliotis, "An Efficient Algebraic
+// Solution to the Perspective-Three-Point Problem", CVPR 2017) in cv::solveP3P. `rays` are (x/z,
+// y/z) in the cam frame.
 std::vector<Rigid3> SolveP3P(const std::array<Eigen::Vector3d, 3>& x_in_world,
                              const std::array<Eigen::Vector2d, 3>& rays);
 

@@ -12,7 +12,7 @@ namespace velamap {
 
 using PoseStep = Eigen::Matrix<double, 6, 1>;
 
-// CrossMatrix(a) * b = a x b.
+// CrossMatrix(a) * b = cross(a, b).
 inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d matrix;
   matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
@@ -39,15 +39,15 @@ inline Eigen::Matrix<double, 2, 3> ByRotation(const Eigen::Matrix<double, 2, 3>&
   return by_rotation;
 }
 
-// Derivative of R x with respect to the unit quaternion (x y z w) of R, from R x = x + 2 w (v x x)
-// + 2 v x (v x x) with its vector part v.
+// Derivative (3 x 4) of the rotated point R p with respect to the unit quaternion (x y z w) of R,
+// from R p = p + 2 w cross(v, p) + 2 cross(v, cross(v, p)), where v = (x y z).
 inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
-                                                         const Eigen::Vector3d& x) {
+                                                         const Eigen::Vector3d& p) {
   const Eigen::Vector3d v = q.vec();
   Eigen::Matrix<double, 3, 4> jacobian;
-  jacobian.leftCols<3>() = 2.0 * (v.dot(x) * Eigen::Matrix3d::Identity() + v * x.transpose() -
-                                  2.0 * x * v.transpose() - q.w() * CrossMatrix(x));
-  jacobian.col(3) = 2.0 * v.cross(x);
+  jacobian.leftCols<3>() = 2.0 * (v.dot(p) * Eigen::Matrix3d::Identity() + v * p.transpose() -
+                                  2.0 * p * v.transpose() - q.w() * CrossMatrix(p));
+  jacobian.col(3) = 2.0 * v.cross(p);
   return jacobian;
 }
 

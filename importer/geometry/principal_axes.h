@@ -15,6 +15,7 @@ struct PrincipalAxes {
   Eigen::Vector3d sums_of_squares = Eigen::Vector3d::Zero();  // along each direction
 };
 
+// `scatter` is the sum of (x - mean) (x - mean)^T over the points x.
 PrincipalAxes AxesOfScatter(const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter);
 
 // `points` must not be empty.

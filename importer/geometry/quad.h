@@ -38,7 +38,8 @@ struct ImageLine {
   Eigen::Vector2d point_px, direction;
 };
 
-// Nothing if the lines are nearly parallel.
+// The directions are about unit vectors. Nothing if the lines are nearly parallel: the sine of the
+// angle between them is below 0.05.
 std::optional<Eigen::Vector2d> Intersect(const ImageLine& a, const ImageLine& b);
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
-// The homography between a unit square and a quad of the image (Heckbert 1989).
+// The homography between a unit square and a quad of the image (Heckbert, "Fundamentals of Texture
+// Mapping and Image Warping", 1989).
 
 #pragma once
 

@@ -35,7 +35,7 @@ bool IsOpenCvName(const std::string& name);
 
 int NumMarkers(const Dictionary& dictionary);
 
-// Of a marker with a black border of `border_bits` cells.
+// The cells along a side of a marker, with its black border of `border_bits` cells.
 int CellsPerSide(const Dictionary& dictionary, int border_bits);
 
 // The dictionary corrects as many wrong bits as the minimum distance of the codes allows.
@@ -49,15 +49,15 @@ std::string DictionaryText(const Dictionary& dictionary);
 // fourth.
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits);
 
-// A marker whose cells have been read, turned by some quarter turns: its first corner is the one
-// that follows `first_corner` others in the order in which the cells were read.
+// A marker whose cells were read in one of four rotations. `first_corner`, 0 to 3, is the index of
+// its first corner in the order of reading, which begins at row 0, column 0.
 struct ReadCode {
   int marker_id = 0;
   int first_corner = 0;
 };
 
-// The marker that has exactly these cells (as MarkerCells() draws them, and turned); nothing
-// without one, or if the border is not black.
+// The marker whose cells, as MarkerCells() draws them, are exactly these in one of the four
+// rotations. Nothing if there is none, or if the border is not black.
 std::optional<ReadCode> ReadCells(const Dictionary& dictionary, const cv::Mat& cells,
                                   int border_bits);
 

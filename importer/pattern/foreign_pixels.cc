@@ -22,10 +22,10 @@ using P = PatternParameters;
 // pixels.
 std::optional<double> ForeignLimit(const std::vector<PixelResidual>& residuals, double contrast) {
   constexpr double kContrast = 0.1, kSigmas = 6.0;
-  constexpr double kEdgeSlope = 0.05;  // of the contrast a pixel
+  constexpr double kEdgeSlope = 0.05;  // of the contrast per pixel
   std::vector<double> on_edges;
   for (const PixelResidual& residual : residuals) {
-    if (residual.slope_gray_a_px > kEdgeSlope * contrast) {
+    if (residual.slope_gray_per_px > kEdgeSlope * contrast) {
       on_edges.push_back(residual.absolute_gray);
     }
   }

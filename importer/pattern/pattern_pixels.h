@@ -27,8 +27,8 @@ ChosenPixels ChoosePixels(const PatternProblem& problem,
 
 struct PixelResidual {
   cv::Point in_patch;
-  double absolute_gray;    // between the model and the pixel, grey levels
-  double slope_gray_a_px;  // of the model there
+  double absolute_gray;      // between the model and the pixel, grey levels
+  double slope_gray_per_px;  // of the model there
 };
 
 // In the order of the pixels.

@@ -53,8 +53,8 @@ SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad_px, int sid
 void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int max_samples,
                 EdgeSamples* samples);
 
-// A lens or a curved cloth bends a side by some thousandths of its length; on a short side noise
-// would pass for a bend.
+// The prior of the fit of one side. It holds the bend small, because a lens or curved cloth bends a
+// side by some thousandths of its length, and on a short side noise would pass for a bend.
 EdgePrior MakeEdgePrior(const SideModel& model);
 
 }  // namespace velamap

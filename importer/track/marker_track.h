@@ -18,7 +18,7 @@ namespace velamap {
 struct MarkerTrack {
   int marker_id = 0;
   QuadCorners corners_px;  // in the last frame: found there, or shifted with the markers around
-  std::optional<Eigen::Vector2d> velocity_px{};  // a frame; if found in the last two searches
+  std::optional<Eigen::Vector2d> velocity_px{};  // per frame; if found in the last two searches
   int num_lost = 0;                              // frames since it was found
   int num_found = 1;                             // frames in which it was found
   double hit_rate = 0.5;                         // running mean of the frames in which it was found

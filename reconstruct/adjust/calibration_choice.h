@@ -18,10 +18,10 @@ struct RefinedIntrinsics {
 };
 
 // Chooses the intrinsics to free in a solution that holds the calibration. Returns nothing unless
-// the sum of squares falls by more than the Bayesian information criterion (Schwarz 1978) and
-// correlated errors explain, and unless the images determine these intrinsics clearly better than
-// the calibration does. It also returns nothing without refine_calibration, and where the options
-// free intrinsics.
+// the sum of squares falls by more than the Bayesian information criterion (Schwarz 1978), times
+// the square of the factor of correlated errors, and the images determine these intrinsics clearly
+// better than the calibration does. It also returns nothing without refine_calibration, and where
+// the options free intrinsics.
 std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution);
 
 // Reports how far the cameras of the solution are from their calibration: in the log if

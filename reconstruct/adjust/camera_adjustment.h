@@ -52,8 +52,8 @@ std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options
                                           const Model* seed, const std::optional<FocalStep>& step);
 
 // Measures a step of the focal length at `step` by an adjustment in which the images from there on
-// have their own camera; `model` is the model before its adjustment. Nothing where the focal
-// lengths agree to 1 % or within their sigmas, or where one part alone cannot be adjusted.
+// have their own camera; `model` is the model before its adjustment. Returns nothing if the focal
+// lengths agree to 1 % or to ten sigmas, or if one part alone cannot be adjusted.
 std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model model, FocalStep step);

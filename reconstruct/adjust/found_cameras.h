@@ -18,13 +18,13 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
 
 void WarnOfFoldedCameras(MarkerSolution* solution);
 
-// Throws DataError where the images leave the focal length open.
+// Throws DataError where the images do not determine a focal length: its sigma is above 5 %.
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
                       const std::vector<std::string>& weaknesses);
 
 // Adds the effect of an inset of all corners to the sigmas of the focal lengths: an inset changes
-// the apparent foreshortening of the squares, and no picture shows it. `inset_as_scale`: 1 sigma of
-// the inset, as a fraction of a side.
+// the apparent foreshortening of the squares, and no picture shows it. `inset_as_scale` is 1 sigma
+// of the relative change of a side that the inset causes (MarkerWeights::inset_as_scale).
 void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas);
 
 }  // namespace velamap

@@ -21,9 +21,9 @@ void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
 int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
                        std::vector<RemovedObservation>* removed);
 
-// Removes all observations of corners that only two images see and whose marker has lost a corner.
-// Two images cannot show that one of them is wrong, but outliers among the other corners of the
-// marker make it likely. Appends to `removed`; returns whether any were removed.
+// Removes all observations of corners that at most two images see and whose marker has lost a
+// corner. Two images cannot show that one of them is wrong, but outliers among the other corners of
+// the marker make it likely. Appends to `removed`; returns whether any were removed.
 bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed);
 
 // Returns the observation to the model, if its image and its point are still there, the point lies

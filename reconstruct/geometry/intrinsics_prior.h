@@ -69,10 +69,11 @@ Camera WithDistortionParams(const Camera& camera);
 // The groups of `free` that the images determine clearly better than the calibration does.
 // `refined` is the estimate, and `covariance` is the covariance of its free parameters, in the
 // order of `prior.free`. A group passes if the sigma of the estimate is at most a third of the
-// prior's sigma, or of the change from the prior's mean if that is larger. The group of the focal
-// length and that of the principal point are judged by their least certain parameter. The
-// distortion is judged by how far it moves a ray radially, at 0.7 of the way to the image's
-// farthest corner; the prior's sigma is then the one that its first parameter causes there.
+// prior's sigma, or of the change from the prior's mean if that is larger. For the focal lengths,
+// and for the coordinates of the principal point, the largest sigma is compared with the largest
+// change, both as multiples of the prior's sigmas. The distortion is judged by how far it moves a
+// ray radially, at 0.7 of the way to the image's farthest corner; the prior's sigma is then the one
+// that its first parameter causes there.
 //
 // No group passes if the ratio of the focal lengths changes by more than a third of the prior's
 // sigma: the pixels of a sensor keep their shape, so such a change is an effect of a rolling

@@ -24,8 +24,9 @@ using CornerVelocities = std::map<ImageId, std::vector<Eigen::Vector2d>>;
 // velocities. Images without velocities are missing.
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
-// How far a corner moves between the time when the middle row is read and the time when its own row
-// is, px, if reading the frame takes one second.
+// Derivative of a corner's position with respect to the time from the first row of the frame to the
+// last, px/s: how far the corner moves from when the middle row is read to when its own row is, if
+// reading the frame takes one second.
 Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                                  const Eigen::Vector2d& velocity_px_s);
 

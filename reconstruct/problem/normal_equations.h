@@ -4,8 +4,8 @@
 // rolling shutter, inset, print scale, scales of parts), all in their tangent spaces. Only the
 // globals couple one marker with another:
 //
-//   H = | D  W |   D block-diagonal by marker,    S = B - W^T D^-1 W = L L^T,
-//       | W' B |   cov(markers) = D^-1 + F F^T,   F = D^-1 W L^-T.
+//   H = |  D   W |   D block-diagonal by marker,    S = B - W^T D^-1 W = L L^T,
+//       | W^T  B |   cov(markers) = D^-1 + F F^T,   F = D^-1 W L^-T.
 
 #pragma once
 

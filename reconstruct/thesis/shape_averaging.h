@@ -19,8 +19,8 @@ using MarkerSolutions = std::vector<MarkerPoints>;
 
 // Iterated weighted mean of one marker's points: starts with the plain mean and weights every point
 // by exp(-|point - mean| / sigma). Each frame contributes the pose solution that is nearest to the
-// medoid, the solution with the smallest sum of distances to all frames. The order of the frames
-// matters only for rounding. `frames` must not be empty.
+// medoid: of the solutions of up to 16 frames, spread over all, the one with the smallest sum of
+// distances to all frames. `frames` must not be empty.
 MarkerPoints AverageMarker(const std::vector<MarkerSolutions>& frames,
                            const ShapeAveragingOptions& options);
 
