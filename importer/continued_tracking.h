@@ -16,8 +16,8 @@ namespace velamap {
 TrackingState ContinuedTracking(const MarkerImporterOptions& options,
                                 const ColmapDatabase& database);
 
-// Adds the names of the frames that have been searched: the database has no row of those without
-// markers.
+// Adds the names of all frames that have been searched, because the database has no row for those
+// without markers.
 std::vector<std::string> WithSearchedFrames(std::vector<std::string> known_names,
                                             const TrackingState& tracking);
 

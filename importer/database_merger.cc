@@ -95,7 +95,7 @@ std::string DifferenceOf(const PartContent& a, const PartContent& b) {
 // All parts in their order.
 std::vector<PartContent> ReadParts(const std::vector<std::string>& paths) {
   if (paths.empty())
-    throw InputError("--database_paths: names no database; give that of each part");
+    throw InputError("--database_paths: names no database; give the database of each part");
   std::vector<PartContent> parts;
   for (const std::string& path : paths) {
     parts.push_back(ReadContent(path));
@@ -134,9 +134,10 @@ FrameDetector DetectorOf(const Layout& layout, const PartContent& part) {
   with_lines.search = SearchMode::kTracked;
   FrameDetector detector = MakeFrameDetector(layout, with_lines);
   if (!IsOfLayout(part.record.detector, detector)) {
-    throw InputError(fmt::format(
-        "--layout_path: not the layout or the dictionary of {}; give that of the import",
-        part.path));
+    throw InputError(
+        fmt::format("--layout_path: not the layout or the dictionary of {}; give the one that the "
+                    "parts were imported with",
+                    part.path));
   }
   return detector;
 }

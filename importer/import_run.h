@@ -23,7 +23,8 @@ namespace velamap {
 // Process() runs on many threads, Consume() on one thread in order.
 class ImportRun {
  public:
-  // `tracking` is where an earlier run has ended. All arguments but it must outlive the run.
+  // `tracking` is the state in which an earlier run has ended. All other arguments must outlive
+  // this run.
   ImportRun(const MarkerImporterOptions& options, const FrameDetector& detector,
             const TrackingState& tracking, ColmapDatabase* database, FrameSource* source);
 
@@ -47,8 +48,9 @@ class ImportRun {
   bool Load(Frame* frame, std::string* reason) const;
   void WriteImage(const Frame& frame, const FrameDetections& detections) const;
   void RecordTracking(const FrameResult& result);
-  // A later run does not write a frame again that is in the database, so its file has to be on
-  // disk first. The tracks after the batch are stored in the same transaction.
+  // The files of a batch have to be on disk before its rows, because a later run does not write the
+  // files of frames that the database holds. The tracks after the batch are stored in the same
+  // transaction.
   void CommitTrackingWithBatch() const;
   // Covers frames without markers at the end, which are in no batch.
   void CommitTracking() const;

@@ -18,8 +18,8 @@
 
 namespace velamap {
 
-// Called with the numbers of frames done and in total (0 if unknown) and a line on the last frame:
-// with none done where the reading of frames begins, then after each.
+// Called once before the first frame is read, with done = 0, and then after each frame. `total` is
+// 0 if it is unknown; `message` is a line about the last frame.
 using ProgressCallback = std::function<void(int done, int total, const std::string& message)>;
 
 struct MarkerImporterOptions {
@@ -43,7 +43,7 @@ struct MarkerImporterOptions {
   bool is_only_source = false;
   VideoOptions allowed_frames;
   // Video only: the part of the frames to import, for MergeDatabases(); empty: all. A part without
-  // markers is no error.
+  // markers is not an error.
   std::optional<VideoPart> part;
   // Whether everything is imported again. The new database and its pictures replace those of an
   // earlier import when they are complete.
@@ -61,12 +61,13 @@ struct ImportReport {
   int num_images_added = 0;    // to the database
   int num_images_present = 0;  // in the database before this run
   int num_images_without_markers = 0;
-  int num_markers = 0;             // detections accepted in this run
-  int num_rejected = 0;            // detections rejected in this run
-  int num_not_in_layout = 0;       // of them, when they were found, because no part names them
-  int num_doubtful_rotations = 0;  // of them, when they were found (kDoubtfulRotation)
-  int num_fallbacks = 0;           // accepted without a corner fit: corners of cv::cornerSubPix
-  int num_pairs = 0;               // image pairs with matches
+  int num_markers = 0;   // detections accepted in this run
+  int num_rejected = 0;  // detections rejected in this run
+  // Of num_rejected, as counted when the frames were processed: those that no part of the layout
+  // names, and those with the reason kDoubtfulRotation, which later frames may resolve.
+  int num_not_in_layout = 0, num_doubtful_rotations = 0;
+  int num_fallbacks = 0;  // accepted without a corner fit: corners of cv::cornerSubPix
+  int num_pairs = 0;      // image pairs with matches
   PriorShapeAgreement prior_shape_agreement;  // of all frames
   std::vector<int> ids_not_in_layout;         // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;          // unreadable files

@@ -1,5 +1,5 @@
-// One run at a time: a lock that other runs of velamap see, on this machine or another one that
-// shares the file system. It ends with the process, however that ends.
+// A lock that lets only one run of velamap work at a time, among the runs on this machine and on
+// others that share the file system. It is released when the process ends, however that happens.
 
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace velamap {
 
-// "since 14:02, process 4711" in local time; with the date where it is not that of `now`, and with
-// the holder's host where it is not `host`. `record` is the text of a lock's file: seconds since
-// 1970, process, host. Empty if it is no such text.
+// "since 14:02, process 4711" in local time, with the date unless that is the date of `now`, and
+// with the holder's host unless that is `host`. `record` is the text of a lock file: seconds since
+// 1970, process, host. Returns an empty text for any other `record`.
 std::string DescribeLockHolder(const std::string& record, std::time_t now, const std::string& host);
 
 class FileLock {

@@ -3,7 +3,7 @@
 // Marker corner c (1..4 = top-left, top-right, bottom-right, bottom-left of the upright marker) of
 // marker k has the permanent COLMAP point id 10*k + c, which can be read in the COLMAP GUI: point
 // 793 is corner 3 of marker 79. Corner 0 stands for the marker's centre, which is derived from the
-// corners in 3D; it is never observed and is no COLMAP point.
+// corners in 3D; it is never observed and is not a COLMAP point.
 
 #pragma once
 

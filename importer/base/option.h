@@ -1,5 +1,5 @@
-// The options of the program. Each one is stated once: its name, the member that it sets, its unit,
-// its range and its meaning. A struct of options that the command line can set has beside it
+// The options of the program. Each one is declared once: its name, the member that it sets, its
+// unit, its range and its meaning. Each struct of options that the command line can set comes with
 //
 //   OptionGroup DescribeOptions(XOptions* options);
 //
@@ -48,7 +48,7 @@ inline OptionRange FromTo(double min, double max) { return {min, max}; }
 // What a command does with the path that an option names. The check that no output is an input
 // (workflows/options/path_check.h) follows from it.
 enum class PathUse {
-  kNone,             // the option is no path
+  kNone,             // the option is not a path
   kReadsFile,        // such as a calibration or a database
   kReadsLayout,      // a layout file, and the dictionary file that it names
   kReadsPictures,    // a video, or a folder of images
@@ -102,8 +102,8 @@ void CheckRange(const Option& option, const std::string& given_as);
 // "--Video.first_frame" for the option that sets `member`, which has to be one of the group's.
 std::string OptionName(const OptionGroup& group, const void* member);
 
-// Throws InputError for the first of the options that is beyond its range. `options` is a copy,
-// because a description holds places that may be written to.
+// Throws InputError for the first of the options that is out of its range. Takes a copy, because
+// DescribeOptions() needs options that can be written to.
 template <typename Options>
 void CheckRanges(Options options) {
   for (const Option& option : DescribeOptions(&options).options) {

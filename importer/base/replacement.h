@@ -62,12 +62,12 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
 void CheckImageName(const std::string& name, const std::string& where);
 
 // Throws InputError, naming the path, for a file or folder that is write-protected: nobody may
-// write it, or not this user. Replacing it would need no such right. Nothing happens if it is
-// missing.
+// write it, or not this user. The check is needed because replacing a file takes no permission to
+// write to it. Nothing happens if it is missing.
 void CheckNotProtected(const std::filesystem::path& path);
 
 // Where output is written until it is finished: beside its place, under a name that no other
-// process or thread uses. Removes what killed runs have left there (RemoveUnfinished()), once a
+// process or thread uses. Removes what killed runs have left there (RemoveUnfinished()), once per
 // folder.
 std::filesystem::path TemporarySibling(const std::filesystem::path& path);
 
@@ -75,8 +75,8 @@ std::filesystem::path TemporarySibling(const std::filesystem::path& path);
 // Any other path stays as it is. Messages name this one.
 std::filesystem::path FinalPath(const std::filesystem::path& path);
 
-// Removes what killed runs of this machine have left unfinished in the folder: the name of such a
-// file tells the process, which is no more. Nothing happens if the folder is missing.
+// Removes unfinished output of killed runs on this machine from the folder: files whose name holds
+// the id of a process that no longer runs. Nothing happens if the folder is missing.
 void RemoveUnfinished(const std::filesystem::path& folder);
 
 }  // namespace velamap

@@ -10,8 +10,8 @@
 namespace velamap {
 
 // `text` has no byte order mark. Throws InputError, naming the path and `kind`, such as "OpenCV
-// FileStorage file", unless its top is a map, and it is nested no deeper and holds no more values
-// than calibrations and dictionaries do. Keys that are not plain identifiers are left out.
+// FileStorage file", unless its top level is a map, and it is nested no deeper and holds no more
+// values than calibrations and dictionaries do. Keys that are not plain identifiers are left out.
 cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
                             const std::string& kind);
 

@@ -1,8 +1,8 @@
 // The COLMAP database. Only the files of this folder know its tables.
 //
-// The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
+// The schema is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
 // COLMAP from 3.5 to 4.x opens. More tables (README.md of this folder) hold what COLMAP has no
-// place for; COLMAP ignores and keeps them. The layout of an existing file is recognised by its
+// place for; COLMAP ignores and keeps them. The schema of an existing file is recognised by its
 // columns.
 
 #pragma once
@@ -45,8 +45,8 @@ class ColmapDatabase {
   enum class Mode { kReadOnly, kReadWriteCreate };
 
   // Opens or creates the file. Throws InputError, naming the path, if it is missing (read only), is
-  // no SQLite file, lacks COLMAP's tables, is locked for longer than `busy_timeout_ms`, or, for
-  // writing, has the layout of another version, holds images that velamap has not imported, or
+  // not an SQLite file, lacks COLMAP's tables, is locked for longer than `busy_timeout_ms`, or, for
+  // writing, has the schema of another version, holds images that velamap has not imported, or
   // cannot be written. A file that is refused stays as it is, byte for byte.
   ColmapDatabase(const std::string& path, Mode mode, int busy_timeout_ms = 5000);
   ~ColmapDatabase();
@@ -68,7 +68,7 @@ class ColmapDatabase {
   // it.
   CameraId AddCamera(const Camera& camera, bool is_calibrated = true);
   std::map<CameraId, Camera> ReadCameras() const;
-  // Whether all cameras are calibrated; true for no camera.
+  // Whether all cameras are calibrated; also true if there are none.
   bool HasCalibration() const;
 
   // Adds image, keypoints, identity-coding descriptors and marker rows. The name must be new.
@@ -111,7 +111,7 @@ class ColmapDatabase {
   // Throws InputError for values that no tracking gives.
   std::optional<TrackingState> ReadTracking() const;
 
-  // Which part of a video the database holds; nothing if its import is a whole one.
+  // Which part of a video the database holds; nothing if it holds a whole import.
   void WritePart(const PartRecord& record);
   // Throws InputError for values that no import writes.
   std::optional<PartRecord> ReadPart() const;

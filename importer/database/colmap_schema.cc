@@ -135,8 +135,8 @@ void CheckCanBeAddedTo(const std::string& path, SQLite::Database* database) {
   CheckColmapTables(path, *database);
   if (ColumnNames(*database, "images").count("prior_qw") == 0) {
     throw InputError(
-        fmt::format("{}: made by COLMAP 3.10 or later, whose layout the other "
-                    "versions refuse; choose a new file (velamap writes the layout that "
+        fmt::format("{}: made by COLMAP 3.10 or later, whose schema the other "
+                    "versions refuse; choose a new file (velamap writes the schema that "
                     "COLMAP 3.5 to 4.x open)",
                     path));
   }

@@ -12,8 +12,8 @@ class Database;
 namespace velamap {
 
 // Throws InputError, naming the path, for faults that SQLite would report less clearly or hide by
-// creating a file: a missing file or, when writing, its missing folder; no regular file; no SQLite
-// file.
+// creating a file: a missing file or, when writing, its missing folder; not a regular file; not an
+// SQLite file.
 void CheckDatabaseFile(const std::string& path, bool writing);
 
 // Throws InputError if a table of COLMAP is missing.
@@ -29,7 +29,7 @@ bool IsFresh(const SQLite::Database& database);
 void CreateTables(SQLite::Database* database);
 
 // Throws InputError, and writes nothing, unless images can be added: for a database of another
-// program, for the layouts of COLMAP 3.10 and later, and for one whose images velamap has not
+// program, for the schemas of COLMAP 3.10 and later, and for one whose images velamap has not
 // imported.
 void CheckCanBeAddedTo(const std::string& path, SQLite::Database* database);
 

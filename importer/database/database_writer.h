@@ -38,8 +38,8 @@ class NewDatabaseGuard {
 // Writes images in one transaction per batch.
 class DatabaseWriter {
  public:
-  // For `detector` see ColmapDatabase::AddImage(). `video` is noted with the first image.
-  // `before_commit` secures what the rows of a batch refer to.
+  // For `detector` see ColmapDatabase::AddImage(). `video` is recorded with the first image.
+  // `before_commit` is called before each commit, to bring to disk what the rows refer to.
   DatabaseWriter(const std::string& detector, const std::optional<SourceFile>& video,
                  const std::function<void()>& before_commit, ColmapDatabase* database);
 
@@ -50,7 +50,7 @@ class DatabaseWriter {
 
  private:
   std::string detector_;
-  std::optional<SourceFile> video_;  // until it is noted
+  std::optional<SourceFile> video_;  // until it is recorded
   std::function<void()> before_commit_;
   ColmapDatabase* database_;
   std::optional<ColmapDatabase::Transaction> transaction_;

@@ -14,7 +14,7 @@
 namespace velamap {
 
 // Loss functions rho(s) of the squared length s of a residual, as in Ceres; Weight(s) is the
-// derivative, which weighs the residual in the normal equations.
+// derivative, which weights the residual in the normal equations.
 struct TrivialLoss {
   double Value(double s) const { return s; }
   double Weight(double) const { return 1.0; }

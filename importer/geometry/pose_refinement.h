@@ -48,8 +48,8 @@ struct RayPoseProblem : LeastSquaresProblem<6> {
   double StepSize(const Step& step, const Equations&) const { return step.head<3>().norm(); }
 };
 
-// Levenberg-Marquardt from `cam_from_world`; returned unchanged where a point lies behind it.
-// OpenCV's solvePnPRefineLM does the same without a loss and takes 20 times as long.
+// Levenberg-Marquardt from `cam_from_world`, which is returned unchanged if a point lies behind
+// that camera. OpenCV's solvePnPRefineLM does the same without a loss and takes 20 times as long.
 template <typename Loss = TrivialLoss>
 Rigid3 RefinePose(const std::vector<RayObservation>& observations, Rigid3 cam_from_world,
                   const Loss& loss = {}) {

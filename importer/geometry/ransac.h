@@ -15,7 +15,8 @@
 namespace velamap {
 
 struct RansacOptions {
-  // Enough samples are drawn that one run in a billion misses a right one, within these limits.
+  // Within these limits, enough samples are drawn that the chance of drawing none without outliers
+  // is one in a billion.
   int min_num_samples = 12;
   int max_num_samples = 160;
   std::uint32_t random_seed = 0;

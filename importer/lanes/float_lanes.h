@@ -1,6 +1,7 @@
-// Groups of kLanes single-precision numbers that are processed together, by the vector extension of
-// GCC and Clang, for which every 64-bit processor has instructions. Results have the same bytes on
-// all of them, because each lane is rounded alone and lanes are added in a fixed order.
+// Groups of kLanes single-precision numbers that are processed together with the vector extension
+// of GCC and Clang, which compiles to SIMD instructions on every 64-bit processor. Results have the
+// same bytes on all of them, because each lane is rounded by itself and lanes are added in a fixed
+// order.
 
 #pragma once
 
@@ -46,7 +47,7 @@ inline Floats Min(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats Max(Floats a, Floats b) { return a < b ? b : a; }
 inline Floats Abs(Floats x) { return Max(x, -x); }
 
-// Exact; the one of Eigen is an approximation that differs between processors.
+// Correctly rounded; Eigen's square root is an approximation that differs between processors.
 inline Floats Sqrt(Floats x) {
   for (int lane = 0; lane < kLanes; ++lane) x[lane] = std::sqrt(x[lane]);
   return x;

@@ -16,18 +16,18 @@ namespace velamap {
 // report damage while later packets are read.
 class PacketDamage {
  public:
-  // Adds the next packet and returns its number. `time` is that of presentation, or
+  // Adds the next packet and returns its number. `time` is the presentation time, or
   // VideoPacket::kNoTime.
   std::int64_t Add(std::int64_t time, bool is_key);
 
   void Mark(std::int64_t packet_idx);
 
-  // Whether the frame of this packet shows what was recorded. A decoder hides damage, and the
-  // frames up to the next key frame repeat what it has put in the place. Leading pictures
+  // Whether the frame of this packet shows what was recorded. A decoder conceals damage with other
+  // pixels, and the frames up to the next key frame copy these. Leading pictures
   // (stored after a key frame, shown before it) may depend on frames before that key frame; no
-  // frame shown after it depends on them. All packets up to this one must have been decoded. A
-  // stream that renews its pictures bit by bit, without key frames, is not whole any more after
-  // damage.
+  // frame shown after it depends on them. All packets up to this one must have been decoded. In a
+  // stream that refreshes its pictures gradually (intra refresh), without key frames, no frame
+  // after the first damage counts as whole.
   bool IsWhole(std::int64_t packet_idx) const;
 
  private:

@@ -44,9 +44,9 @@ inline constexpr std::size_t kMaxReorder = 16;
 // kMaxReorder packets after it is therefore not used, and at least as many frames before the wanted
 // one are decoded.
 //
-// Returns nothing if frames can be counted by decoding only: if a packet has no time or that of
-// another, times of decoding run backwards, or pictures are shown before the first key frame, which
-// the decoder may leave out.
+// Returns nothing if frames can only be counted by decoding them: if a packet has no presentation
+// time or the same as another one, if decoding times run backwards, or if pictures are shown before
+// the first key frame, because the decoder may leave these out.
 std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, int frame_number);
 
 }  // namespace velamap

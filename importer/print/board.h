@@ -23,7 +23,7 @@ struct Board {
   int num_markers = 0;                // ids count from first_id, row by row from the top left
   int first_id = 0;
   std::vector<Eigen::Vector2d> marker_min_mm;  // top left corners of the markers, page frame
-  std::vector<Eigen::Vector2d> square_min_mm;  // the same of the black squares of a chessboard
+  std::vector<Eigen::Vector2d> square_min_mm;  // top left corners of a chessboard's black squares
 };
 
 // Places the board in the middle of the page, in portrait or landscape, whichever allows larger

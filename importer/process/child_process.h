@@ -35,16 +35,16 @@ class ChildProcess {
 
   // Starts `words`, the program (a name on the PATH, or a path) and its arguments, with the
   // variables `environment` ("NAME=value") only. Its standard input is empty. Throws
-  // std::system_error if the system starts no more processes. The program and whatever it starts in
-  // its group are killed when it has ended, when this object is destroyed, and when the thread that
-  // has made it or the whole process ends.
+  // std::system_error if the system cannot start another process. The program and whatever it has
+  // started in its group are killed when the program ends, when this object is destroyed, and when
+  // the thread that created it or the whole process ends.
   ChildProcess(std::vector<std::string> words, std::vector<std::string> environment);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // Waits for output of both streams. Empty once the program and whatever it has started have ended
-  // or closed them. Nothing at the deadline.
+  // Waits for output on stdout or stderr and returns it: an empty text once the program and
+  // whatever it has started have ended or closed both, and nothing at the deadline.
   std::optional<std::string> Read(Time deadline) const;
 
   // Waits for the end and returns the status of waitpid(); nothing at the deadline. Throws

@@ -19,7 +19,7 @@ bool ParseMarkerId(std::string_view text, int* id);
 // other text.
 std::optional<std::vector<int>> ParseIdRange(std::string_view text);
 
-// The same of several with commas between them, such as `3,17,20-25`.
+// The same for several ids and ranges separated by commas, such as `3,17,20-25`.
 std::optional<std::vector<int>> ParseIdList(std::string_view text);
 
 }  // namespace velamap

@@ -8,7 +8,7 @@ namespace velamap {
 
 // The current time, UTC, unless the environment variable SOURCE_DATE_EPOCH sets another one, in
 // seconds since 1970 (https://reproducible-builds.org/specs/source-date-epoch). Throws InputError
-// if that is no time.
+// if that is not a valid time.
 std::tm OutputDate();
 
 }  // namespace velamap

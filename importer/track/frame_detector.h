@@ -37,7 +37,8 @@ struct FrameDetector {
   std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
   ImageFormation formation;               // of the camera and the print
   PriorShape prior_shape;                 // of markers that can be detected; may be empty
-  // In place of all markers; nothing else counts then.
+  // If set, the corners of this chessboard are detected instead of markers, and the other members
+  // have no effect.
   std::optional<Chessboard> chessboard;
 };
 
@@ -68,8 +69,8 @@ std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);
 
-// Locates one marker whose place is known to `reach_px`, as LocateMarker() does. Nothing also where
-// a search would not accept it. Thread-safe.
+// Locates one marker whose place is known to `reach_px`, as LocateMarker() does. Also returns
+// nothing where a search would reject the marker. Thread-safe.
 std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px);
@@ -85,7 +86,7 @@ bool IsOfLayout(const std::string& description, const FrameDetector& detector);
 
 // Throws InputError, naming both, if `description` is of another dictionary or border than the
 // layout's. Nothing happens for a layout without a dictionary and for descriptions of other kinds.
-// `database_path` is where the description stands.
+// `database_path` is the database that holds the description.
 void CheckDictionaryOf(const std::string& description, const Layout& layout,
                        const std::string& database_path);
 

@@ -9,13 +9,13 @@
 
 namespace velamap {
 
-// Ids along each line of the layout, horizontal and vertical, and those that a part lists outside
-// its lines: these usually stand in a row too, and where they do not, no marker is located there.
+// Ids along each line of the layout, horizontal and vertical, and the ids that a part lists outside
+// its lines: these usually form a row too, and where they do not, no marker is located there.
 std::vector<std::vector<int>> LinesOfLayout(const Layout& layout);
 
-// Expects every marker whose two neighbours on a line are found midway between them, and every
-// marker whose next two on one side are found as far beyond these as they are apart. Pairs of
-// different orientation and ids that are found twice are ignored.
+// Expects a marker midway between its two neighbours on a line if both are found. Otherwise, if the
+// next two markers on one side are found, expects it beyond the nearer one at the distance between
+// the two. Pairs of different orientation and ids that are found twice are ignored.
 std::vector<ExpectedMarker> ExpectOnLines(const std::vector<std::vector<int>>& lines,
                                           const std::vector<MarkerQuad>& found);
 

@@ -7,11 +7,12 @@
 
 namespace velamap {
 
-// Whether combs show in the picture (8 bit). Lines are compared with their neighbours, which are of
-// the other field, and with the next but one, which are of their own: in a comb, only the former
-// differ. A progressive picture differs from the next-but-one lines at least as often, except where
-// a texture repeats every two lines: such a picture looks combed.
-// A picture in which hardly anything has moved between its fields is not combed.
+// Whether combs show in the picture (8 bit). Each line is compared with its neighbours, which
+// belong to the other field, and with the next-but-one lines, which belong to its own: in a comb, a
+// line differs only from its neighbours. In a progressive picture, lines differ from the
+// next-but-one lines at least as often, except where a texture repeats every two lines: such a
+// picture looks combed. A picture in which hardly anything has moved between its fields is not
+// combed.
 bool IsCombed(const cv::Mat& gray);
 
 }  // namespace velamap

@@ -13,7 +13,8 @@ struct SourceFile {
   std::uint64_t path_hash = 0;  // of the absolute path without links
   std::uint64_t size = 0;
   std::int64_t modified_s = 0;  // since 1970, UTC
-  // When content, name or rights were changed last, which no program sets back (ctime); since 1970.
+  // When content, name or permissions were last changed (ctime, which programs cannot set), since
+  // 1970.
   std::int64_t changed_ns = 0;
   // Taken from the whole picture, or from 16 parts that are spread over a video, because an encoded
   // video that is changed somewhere is changed in many places.

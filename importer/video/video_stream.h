@@ -26,7 +26,8 @@ struct FfmpegFreer {
   void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
 
-// Throws std::bad_alloc where FFmpeg has no memory, which is no end of the video.
+// Throws std::bad_alloc where FFmpeg runs out of memory, which must not pass for the end of the
+// video.
 class VideoStream {
  public:
   // Throws InputError if FFmpeg cannot read the file, or if it holds no video.

@@ -1,6 +1,6 @@
-// The JPEG files into which frames of a video are written. Each carries a mark, a comment that
-// holds the hash of the rest, which tells it from pictures of the user and from frames that the
-// user has changed.
+// The JPEG files into which frames of a video are written. Each carries a mark: a JPEG comment with
+// the hash of the rest of the file. It tells these files from the user's own pictures and from
+// frames that the user has changed.
 
 #pragma once
 
