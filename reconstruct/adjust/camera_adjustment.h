@@ -18,8 +18,8 @@ namespace velamap {
 
 struct CameraAdjustment {
   std::map<CameraId, Camera> cameras;
-  // How much the model explains with them: the sum over all corners of 1 for an error of 0, falling
-  // to 0 at a two-thousandth of the picture's larger side.
+  // How much the model explains with these cameras: the sum of a score over all corners, which is 1
+  // for an error of 0 and falls to 0 at 0.0005 of the picture's larger side.
   double explained = 0.0;
   // 1 sigma of the (first) focal length by camera, px; not of turned cameras.
   std::map<CameraId, double> focal_sigmas_px;

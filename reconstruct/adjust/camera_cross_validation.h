@@ -14,7 +14,7 @@ namespace velamap {
 struct CameraModelScore {
   CameraModel model = CameraModel::kPinhole;
   double unseen_error_px = 0.0;  // RMS over the corners of pictures that took no part in the fit
-  double seen_error_px = 0.0;    // RMS over all corners, where all take part
+  double seen_error_px = 0.0;    // RMS over all corners in the fit to all pictures
   bool is_folded = false;        // its distortion folds over inside the picture
 };
 

@@ -8,7 +8,8 @@
 
 namespace velamap {
 
-// Sets the factor by the median residual of the solution as it stands. Returns the relative change.
+// Sets the factor by the median residual of the solution, without minimizing. Returns the relative
+// change.
 double CalibrateRobustly(MarkerSolution* solution);
 
 struct CornerCalibration {

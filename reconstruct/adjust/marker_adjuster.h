@@ -41,21 +41,21 @@ class MarkerAdjuster {
   // The three steps above.
   void AdjustToCorners();
 
-  // The result of AdjustToCorners. If it shows a rolling shutter, that is freed in `begin`, and the
-  // result is the one from there.
+  // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the
+  // shutter's time in `begin` and adjusts from there again.
   static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
 
   // With find_camera, after AdjustToCorners: takes the camera model that explains the images best.
   void ChooseCameraModel();
-  // The same by cross-validation (camera_cross_validation.h), or takes the `wanted` model. Corners
-  // that the most flexible model explains return.
+  // The same by cross-validation (camera_cross_validation.h), or takes the `wanted` model. Restores
+  // the corners that the most flexible model explains.
   std::vector<CameraModelScore> CrossValidateCameraModel(std::optional<CameraModel> wanted);
   // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
-  // After AdjustToCorners; `begin` is this adjuster before it. Returns its result with those
-  // intrinsics free that the images determine better than the calibration, or nothing unless they
-  // explain the corners significantly better.
+  // After AdjustToCorners(); `begin` is this adjuster as it was before that. Adjusts `begin` with
+  // the intrinsics free that the images determine better than the calibration does. Returns nothing
+  // unless these explain the corners significantly better.
   std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
 
   // Adds the scale bars that agree with each other. If they contradict the markers, widens the
@@ -63,8 +63,8 @@ class MarkerAdjuster {
   bool AddScaleBars();
 
   // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
-  // and the warnings and figures of the summary. Image points move to where they are while the
-  // middle row is read.
+  // and the warnings and figures of the summary. Moves the image points to where they are while the
+  // middle row is read (MoveToMiddleRow()).
   void Finish();
   // After Finish: uses the jackknife's sigmas for the cameras where they are larger.
   void WidenCameraSigmas();

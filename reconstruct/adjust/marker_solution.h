@@ -29,7 +29,7 @@ struct MarkerSolution {
   // print scale.
   MarkerState state;
   MarkerWeights weights;
-  // The free intrinsics come from SetFreeIntrinsics and not from the user's options.
+  // Whether the free intrinsics come from SetFreeIntrinsics() and not from the user's options.
   bool has_chosen_intrinsics = false;
   int num_iterations = 0;  // of all minimizations
   std::vector<std::string> warnings;
@@ -61,7 +61,7 @@ double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearizati
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution);
 
-// Sum of the squares of all residuals, in sigmas, minus what the loss takes off.
+// Sum of the squares of all residuals in sigmas, as reduced by the loss.
 double SumOfSquares(const MarkerSolution& solution);
 
 // The decrease of SumOfSquares that is significant for this many more parameters: the Bayesian

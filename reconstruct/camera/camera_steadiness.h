@@ -33,7 +33,7 @@ struct FocalStep {
   std::string first_image_after;  // its name
   CameraId camera_id = 0;         // of that image
   double before_px = 0.0, after_px = 0.0;
-  double sigmas = 0.0;  // size of the step in sigmas, from those of the images or their scatter
+  double sigmas = 0.0;  // size of the step in sigmas of the images, or in their scatter if larger
 
   // Certain: at least 2 % and 8 sigmas. The points of the model were found with one focal length
   // and hide part of a step, so a smaller one (0.3 % and 3 sigmas) is suspicious: an adjustment

@@ -4,7 +4,7 @@
 // and a marker is seen in most images that should show it.
 //
 // All tests are relative: they compare lengths with the distances between neighbours or with the
-// extent of a part, and numbers of images with those of the neighbours.
+// extent of a part, and how often a marker is seen with how often its neighbours are.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// One camera as another model.
+// Expresses a camera in another camera model.
 
 #pragma once
 

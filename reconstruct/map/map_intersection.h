@@ -18,8 +18,8 @@ struct MarkerPlacement {
   // The place that most frames support, followed by a rival where one explains the frames nearly as
   // well (the other planar solution). Empty where no two frames agree.
   std::vector<PlaceHypothesis> places;
-  // Observations that do not agree with the best place but agree on another one: the id exists
-  // twice.
+  // Observations that do not agree with the best place but agree on another one, as when the id
+  // exists twice or was misread.
   std::vector<int> elsewhere_idxs;
   int num_seen = 0;  // registered frames that see the marker
 };

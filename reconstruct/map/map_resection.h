@@ -24,8 +24,8 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
                                         std::uint32_t random_seed);
 
 // Whether the second hypothesis explains nearly as much as the first: as many observations at up to
-// twice the cost. For the poses of a frame, other frames should then join the map first. Also for
-// the places of a marker (PlaceHypothesis).
+// twice the cost. For poses of a frame (PoseHypothesis) and places of a marker (PlaceHypothesis). A
+// frame with an ambiguous pose should wait until other frames have joined the map.
 template <typename Hypothesis>
 bool IsAmbiguous(const std::vector<Hypothesis>& hypotheses) {
   // The small constant avoids comparing rounding errors.

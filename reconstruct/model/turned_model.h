@@ -1,4 +1,5 @@
-// Portrait and landscape pictures of one camera, whose pixels were turned, as one camera.
+// Treats portrait and landscape pictures of one camera, whose pixels were turned, as pictures of a
+// single camera during an adjustment.
 
 #pragma once
 
@@ -26,8 +27,8 @@ struct TurnedCameras {
 // removes the turned camera. The camera of the first image stays.
 TurnedCameras TieTurnedCameras(Model* model);
 
-// The same images turned the other way, 1 for 3 and 3 for 1: which way it was shows only in the
-// principal point.
+// Turns the same images the other way, as if quarter_turns were 3 instead of 1 or 1 instead of 3.
+// Only the principal point shows which of the two is right.
 void TurnTheOtherWay(TurnedCameras* turned, Model* model);
 
 // The inverse, after an adjustment of the model: turned cameras follow the ones they were tied to.

@@ -23,7 +23,7 @@ struct MarkerWeights {
   double corner_factor = 1.0;  // by which all corners' sigmas are multiplied
   double loss_sigmas = 0.0;
   double print_tolerance = 0.0;
-  // 1 sigma of the scale error, as a fraction, by an inset that is not estimated.
+  // 1 sigma of the scale error, as a fraction, that an inset causes that is not estimated.
   double inset_as_scale = 0.0;
   // 1 sigma of the scale of the print, as a fraction, that explains why scale bars contradict the
   // markers; 0: they do not.

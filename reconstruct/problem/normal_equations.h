@@ -68,12 +68,13 @@ struct ParameterColumns {
 ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                         const RowMajorMatrix& errors);
 
-// The residuals that remain of such errors after that step.
+// What remains of the errors in the residuals after the step of StepOf().
 RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                           const RowMajorMatrix& errors);
 
-// Pieces of the two: adds J^T errors of one block, whose rows begin at `row`, to the columns from
-// `column` on; multiplies all columns by the covariance.
+// Building blocks of StepOf() and ErrorsLeft(). AddGradient() adds J^T errors of one residual
+// block, whose rows begin at `row`, to the columns from `column` on. MultiplyByCovariance()
+// multiplies all columns by the covariance.
 void AddGradient(const ResidualJacobian& block, const MarkerCovariance& covariance,
                  const RowMajorMatrix& errors, Eigen::Index row, Eigen::Index column,
                  ParameterColumns* gradient);

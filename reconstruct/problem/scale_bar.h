@@ -19,7 +19,7 @@ struct ScaleBar {
   std::vector<std::vector<double>> corner_weights;
 };
 
-// Those of the distances that are scale bars and whose corners are in the state.
+// The scale bars among the distances, except those with a corner that the state lacks.
 std::vector<ScaleBar> FindScaleBars(const MarkerState& state,
                                     const std::vector<KnownDistance>& distances);
 

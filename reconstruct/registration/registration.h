@@ -14,7 +14,8 @@
 
 namespace velamap {
 
-// Begins the reason of a frame that would add little to those that are registered.
+// The beginning of RegisteredFrame::reason for a frame that would add little to the registered
+// ones.
 inline constexpr char kNotChosen[] = "not chosen: ";
 
 struct RegisteredFrame {
@@ -28,7 +29,7 @@ struct RegisteredFrame {
   // alignment with the mean shape.
   double rms_error_m = 0.0;
   std::string reason;  // why it is not registered, else empty
-  // Markers of the shape that the frame shows although they agree on no position of its camera.
+  // If no position of its camera fits them: the number of the shape's markers that the frame shows.
   int num_contradicting = 0;
 };
 
@@ -66,8 +67,8 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 // which a frame can be registered.
 void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
 
-// What it means that many frames with many markers agree with the shape on no position of the
-// camera, and what to do; empty where there are few of them.
+// If no position of the camera fits at least a fifth of the frames, each with eight markers of the
+// shape or more: says so, with the possible causes and a remedy. Empty otherwise.
 std::string CameraDoubt(const Registration& registration);
 
 }  // namespace velamap

@@ -53,10 +53,10 @@ struct SelectedFrame {
 };
 
 // Thesis section 3.4.1: skips s frames from the central frame, takes the frame within m frames of
-// there that has the most RANSAC inliers, continues from it, n times on each side. Where no frame
-// of a window aligns with the central frame, the window is aligned with the markers of all frames
-// found so far if extends_shape; if that fails too, the window is skipped. `frames` are sorted by
-// frame_number. The result does not contain the central frame.
+// there that has the most RANSAC inliers, and continues from it, n times on each side. Where no
+// frame of a window aligns with the central frame, the window is aligned with the markers of all
+// frames found so far if extends_shape; if that fails too, the window is skipped. `frames` are
+// sorted by frame_number. The result does not contain the central frame.
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
                                         const FrameSearchOptions& search, const Layout& layout,
                                         const FrameAlignmentOptions& alignment);

@@ -1,9 +1,9 @@
 // Registration by the thesis's method (sections 3.4 and 3.5): frames are aligned with a central
 // frame, and the places of their markers are averaged.
 //
-// A video is searched in time order. Photographs have none: their central frame is the one that
-// shares most markers with the others, and images are added one by one to the growing mean shape,
-// which reaches images that share nothing with the central frame through others.
+// A video is searched in time order. Photographs have no such order: their central frame is the one
+// that shares most markers with the others, and images are added one by one to the growing mean
+// shape, which through other images reaches those that share nothing with the central frame.
 
 #pragma once
 
