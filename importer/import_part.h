@@ -1,12 +1,13 @@
-// The import of a long video in parts, each by a separate job into a separate database. The result
-// of MergeDatabases() (database_merger.h) equals that of a single import, row for row:
+// The import of a long video in parts, each by a separate job into a separate database.
+// MergeDatabases() (database_merger.h) makes the same database from them, row for row, as a single
+// import would, for these reasons:
 //
 //   tracking   starts again with every group of frames (track/marker_tracking.h), and a part is a
 //              number of whole groups
 //   formation  every part estimates how camera and print change edges from the beginning of the
 //              whole video
-//   the rest   rotations that other frames decide, and matches, need all frames: the merge does
-//   them
+//   the rest   rotations that other frames decide, and matches, need all frames and are left to the
+//              merge
 
 #pragma once
 

@@ -76,8 +76,7 @@ Model MakeSeedModel(const Registration& registration, const std::vector<Database
   if (static_cast<int>(model.images.size()) < min_num_images || model.points3D.empty()) {
     throw DataError(
         "fewer than two images share markers, so there is nothing to adjust; take more pictures "
-        "that "
-        "show the same markers");
+        "that show the same markers");
   }
   // Another image becomes the origin if the filters have removed the central one.
   const ImageId first = model.FindImage(registration.central_image_id) != nullptr

@@ -18,7 +18,7 @@ using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 // for a decision do not count.
 struct PriorShapeAgreement {
   int num_known = 0;     // detections of markers that the prior shape holds
-  int num_agreeing = 0;  // those of them that the camera pose of their frame explains
+  int num_agreeing = 0;  // of num_known: those that the camera pose of their frame explains
 
   PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;

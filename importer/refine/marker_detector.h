@@ -1,5 +1,5 @@
-// Detects the markers of one grey image: searches them (marker_search.h) and refines their corners
-// to a fraction of a pixel.
+// Detects the markers of one grey image: searches for them (marker_search.h) and refines their
+// corners to a fraction of a pixel.
 
 #pragma once
 
@@ -17,14 +17,14 @@ namespace velamap {
 
 // Detects all markers of `dictionary` in an 8-bit grey image. Corners are in the image frame (px);
 // the half pixel between OpenCV's pixel centres and COLMAP's is already added. Edge refinement sets
-// the sigma of each corner, or marks the detection as a fallback.
-// Ids may occur more than once (duplicates.h). Thread-safe; colours are left zero.
+// the sigma of each corner, or marks the detection as a fallback. Ids may occur more than once
+// (duplicates.h). Thread-safe; colours are left zero.
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                            int border_bits, const ArucoDetectionOptions& options);
 
 // The second half of DetectMarkers(): refines the corners of markers that have been found, in their
-// order, and reads the codes of fitted ones again (read_again.h). Without those that only a second
-// look has found and that cannot be fitted.
+// order, and reads the codes of fitted ones again (read_again.h). Leaves out markers that only a
+// second look has found and that cannot be fitted.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,

@@ -53,9 +53,10 @@ struct BoardView {
 std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& images,
                                           double unknown_sigma_px);
 
-// Greedily takes the view that adds most: in every cell of `grid` and for every tilt, the logarithm
-// of one plus the corners seen there so far, each of which counts by the square of the ratio of the
-// median sigma of all corners and its own. Indices of at most `max_num_views`, ascending.
+// Greedily takes the view that adds most to the sum, over the cells of `grid` and the tilts, of
+// log(1 + corners seen there so far). A corner counts (median of corner_sigma_px over the views /
+// corner_sigma_px of its view)^2, but at most 4. Returns the indices of at most `max_num_views`
+// views, ascending.
 std::vector<std::size_t> ChooseBoardViews(const std::vector<BoardView>& views,
                                           const PictureGrid& grid, int max_num_views);
 

@@ -66,9 +66,8 @@ struct MapSolution {
   int NumRegistered() const;
 };
 
-// Estimates the pose of every marker alone. The frames get their frame_idx in the order
-// of `images`.
-// `num_threads` 0: one per core.
+// Estimates the poses of each marker from each of its observations by itself. The frames get their
+// frame_idx in the order of `images`. `num_threads` 0: one per core; never changes the result.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
                           const std::map<CameraId, Camera>& cameras, const Layout& layout,
                           int num_threads = 0);
