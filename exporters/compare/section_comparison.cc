@@ -67,14 +67,22 @@ void AddDifferences(const Section& section, const Section& reference, bool with_
   if (with_twist) add("twist_deg", 1.0, section.twist_deg, reference.twist_deg);
 }
 
-// The boom, or the name of the lowest section; empty for a part without sections.
+// Whether two curves of a line run between the same markers.
+bool HaveSameEnds(const Section& a, const Section& b) {
+  return a.markers.front().marker_id == b.markers.front().marker_id &&
+         a.markers.back().marker_id == b.markers.back().marker_id;
+}
+
+// The boom, or the lowest section with its ends, so that chords over different markers are
+// different references; empty for a part without sections.
 std::string TwistReference(const SectionReport& report, const std::string& part) {
   const auto is_of_part = [&](const auto& item) { return item.part == part; };
   const auto rig = std::find_if(report.rigs.begin(), report.rigs.end(), is_of_part);
   if (rig == report.rigs.end()) return "";
   if (rig->twist_reference == "boom") return rig->twist_reference;
-  return "section " +
-         std::find_if(report.sections.begin(), report.sections.end(), is_of_part)->name;
+  const Section& lowest = *std::find_if(report.sections.begin(), report.sections.end(), is_of_part);
+  return fmt::format("section {} from {} to {}", lowest.name, lowest.markers.front().marker_id,
+                     lowest.markers.back().marker_id);
 }
 
 void AddNotes(const SectionReport& report, const char* whose, std::vector<std::string>* notes) {
@@ -86,7 +94,8 @@ void AddNotes(const SectionReport& report, const char* whose, std::vector<std::s
 }
 
 // The markers of the lines beyond the outermost ones that are whole in both shapes. With them,
-// chords of different lengths would be compared.
+// chords of different lengths would be compared. A line with too few common markers for a section
+// keeps its markers, so that the notes give the reason why one of the shapes has no section there.
 std::set<int> MarkersBeyondCommonEnds(const MarkerShape& shape, const MarkerShape& reference,
                                       const Layout& layout) {
   const auto is_common = [&](int id) {
@@ -121,6 +130,14 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
                                    shape, beyond, layout, wanted_part);
   for (const Section& section : comparison.of_shape.sections) {
+    const Section* other = FindSection(comparison.of_reference, section.part, section.name);
+    if (other == nullptr) continue;
+    if (!HaveSameEnds(section, *other)) {
+      comparison.notes.push_back(fmt::format(
+          "{} {}: not compared: too few of its markers are whole in both, and the chords differ",
+          section.part, section.name));
+      continue;
+    }
     const std::string missing = MissingEndsText(section);
     if (missing.empty()) continue;
     comparison.notes.push_back(fmt::format("{} {}: compared over the markers of both, {}",
@@ -131,7 +148,7 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   std::set<std::string> parts_without_twist;
   for (const Section& section : comparison.of_shape.sections) {
     const Section* other = FindSection(comparison.of_reference, section.part, section.name);
-    if (other == nullptr) continue;
+    if (other == nullptr || !HaveSameEnds(section, *other)) continue;
     const bool with_twist = TwistReference(comparison.of_shape, section.part) ==
                             TwistReference(comparison.of_reference, section.part);
     if (!with_twist) parts_without_twist.insert(section.part);

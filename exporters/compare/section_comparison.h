@@ -35,7 +35,8 @@ struct SectionComparison {
   Rigid3 frame_from_reference;
   SectionReport of_shape, of_reference;  // in that frame
   std::vector<SectionDifference> differences;
-  // Sections that one of the shapes lacks, with the reason; twists that cannot be compared.
+  // Sections that one of the shapes lacks, with the reason; sections with too few common markers,
+  // and twists, that cannot be compared.
   std::vector<std::string> notes;
 };
 

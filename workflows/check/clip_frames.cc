@@ -13,7 +13,7 @@ namespace velamap {
 
 VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames) {
   VideoOptions spread = video;
-  spread.frame_step *= std::max(1, num_frames / max_num_frames);
+  spread.frame_step *= std::max(1, (num_frames + max_num_frames - 1) / max_num_frames);
   return spread;
 }
 

@@ -15,7 +15,8 @@ struct ClipFrames {
   bool is_video = false;
 };
 
-// Chooses about `max_num_frames` of the `num_frames` that `video` chooses, at equal distances.
+// Chooses at most `max_num_frames` of the `num_frames` (0: unknown) that `video` chooses, at equal
+// distances from the first to nearly the last.
 VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames);
 
 // Reads up to `max_num_frames` frames: the first ones that `video` chooses, or photographs at equal

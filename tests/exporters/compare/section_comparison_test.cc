@@ -79,6 +79,20 @@ TEST(ComparisonSections, EndsThatOneLacksAreLeftOutOfBoth) {
                                     "the luff")));
 }
 
+TEST(ComparisonSections, ChordsOverDifferentMarkersAreNotCompared) {
+  const MarkerShape whole = BoatShape(0.001);
+  // Both have four markers of h1, but only 13 and 14 in common.
+  const SectionComparison comparison = Compare(Without({15, 16}, whole), Without({11, 12}, whole));
+  EXPECT_EQ(comparison.of_shape.sections.size(), 5u);
+  EXPECT_EQ(comparison.of_reference.sections.size(), 5u);
+  EXPECT_TRUE(std::none_of(comparison.differences.begin(), comparison.differences.end(),
+                           [](const auto& d) { return d.section == "h1"; }));
+  EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr("sail h1: not compared")));
+  EXPECT_THAT(comparison.notes, testing::Not(testing::Contains(HasSubstr("h1: compared over"))));
+  EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr("twists of sail cannot be compared")));
+  EXPECT_EQ(comparison.differences.size(), 4u * 5);
+}
+
 TEST(ComparisonSections, SigmaIsOfBothTogether) {
   const MarkerShape a = BoatShape(0.001), b = BoatShape(0.003);
   const double both = *Find(Compare(a, b), "h2", "camber_percent").sigma;
