@@ -155,7 +155,7 @@ double SigmaOf(const MarkerEquations& equations, const PointGradient& gradient) 
   return std::sqrt(std::max(0.0, variance));
 }
 
-PointGradient RatioGradient(const ShapeMarker& marker, const MarkerSidesMeasured& measured) {
+PointGradient RatioGradient(const ShapeMarker& marker, const MeasuredMarkerSides& measured) {
   const auto& sides = measured.sides;
   PointGradient gradient;  // of the logarithm
   for (int side = 1; side <= kNumCorners; ++side) {
@@ -228,17 +228,17 @@ void MoveOut(double inset_px, ModelImage* image) {
 
 }  // namespace
 
-double MarkerSidesMeasured::Mean() const { return MeanSide(sides); }
+double MeasuredMarkerSides::Mean() const { return MeanSide(sides); }
 
-double MarkerSidesMeasured::HorizontalOverVertical() const {
+double MeasuredMarkerSides::HorizontalOverVertical() const {
   return (sides[0] + sides[2]) / (sides[1] + sides[3]);
 }
 
-std::vector<MarkerSidesMeasured> MeasureSides(const MarkerShape& shape) {
-  std::vector<MarkerSidesMeasured> markers;
+std::vector<MeasuredMarkerSides> MeasureSides(const MarkerShape& shape) {
+  std::vector<MeasuredMarkerSides> markers;
   for (const ShapeMarker& marker : shape.markers) {
     if (!marker.IsWhole()) continue;
-    MarkerSidesMeasured measured;
+    MeasuredMarkerSides measured;
     measured.marker_id = marker.marker_id;
     measured.part = marker.part;
     measured.sides = MarkerSides(marker);
@@ -247,12 +247,12 @@ std::vector<MarkerSidesMeasured> MeasureSides(const MarkerShape& shape) {
   return markers;
 }
 
-std::vector<MarkerSidesMeasured> MeasureSides(const Model& model, const Layout& layout) {
+std::vector<MeasuredMarkerSides> MeasureSides(const Model& model, const Layout& layout) {
   const MarkerShape shape = ShapeFromModel(model, layout);
   const std::map<int, MarkerEquations> equations_of = EquationsOfMarkers(model);
   const std::map<int, double> sides_px = SidesInImages(model);
-  std::vector<MarkerSidesMeasured> markers = MeasureSides(shape);
-  for (MarkerSidesMeasured& measured : markers) {
+  std::vector<MeasuredMarkerSides> markers = MeasureSides(shape);
+  for (MeasuredMarkerSides& measured : markers) {
     const auto side_px = sides_px.find(measured.marker_id);
     if (side_px != sides_px.end()) measured.side_px = side_px->second;
     const MarkerEquations& equations = equations_of.at(measured.marker_id);

@@ -13,7 +13,7 @@
 
 namespace velamap {
 
-struct MarkerSidesMeasured {
+struct MeasuredMarkerSides {
   int marker_id = 0;
   std::string part;
   std::array<double, kNumCorners> sides{};  // 1-2, 2-3, 3-4, 4-1; m for a metric shape
@@ -30,11 +30,11 @@ struct MarkerSidesMeasured {
 };
 
 // Measures the sides of the whole markers, by id. Members that need images stay empty.
-std::vector<MarkerSidesMeasured> MeasureSides(const MarkerShape& shape);
+std::vector<MeasuredMarkerSides> MeasureSides(const MarkerShape& shape);
 
 // The same with the images of a model. The noise of a marker follows from its own residuals, with a
 // weak prior at the median of all markers.
-std::vector<MarkerSidesMeasured> MeasureSides(const Model& model, const Layout& layout);
+std::vector<MeasuredMarkerSides> MeasureSides(const Model& model, const Layout& layout);
 
 // Triangulates every point again, from its image points alone (least squares, fixed cameras),
 // because an adjustment that knows the size of the markers has pulled the points to that size.

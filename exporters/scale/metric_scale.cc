@@ -31,10 +31,10 @@ constexpr double kRoundingTolerance = 1e-9;
 }
 
 // The scale from each marker alone, without markers that degenerate to a point.
-std::map<int, double> RatiosOf(const std::vector<MarkerSidesMeasured>& markers,
+std::map<int, double> RatiosOf(const std::vector<MeasuredMarkerSides>& markers,
                                const Layout& layout) {
   std::map<int, double> ratios;
-  for (const MarkerSidesMeasured& marker : markers) {
+  for (const MeasuredMarkerSides& marker : markers) {
     const double ratio = MarkerLength(layout, marker.marker_id) / marker.Mean();
     if (std::isfinite(ratio)) ratios[marker.marker_id] = ratio;
   }
@@ -52,9 +52,9 @@ std::vector<double> ValuesOf(const std::map<int, double>& ratio_of) {
   return ratios;
 }
 
-double PrintedOverMeanSide(const std::vector<MarkerSidesMeasured>& markers, const Layout& layout) {
+double PrintedOverMeanSide(const std::vector<MeasuredMarkerSides>& markers, const Layout& layout) {
   double printed = 0.0, measured = 0.0;
-  for (const MarkerSidesMeasured& marker : markers) {
+  for (const MeasuredMarkerSides& marker : markers) {
     if (!(marker.Mean() > 0)) continue;  // as in RatiosOf()
     printed += MarkerLength(layout, marker.marker_id);
     measured += marker.Mean();
@@ -78,7 +78,7 @@ Agreement FindAgreement(const std::map<int, double>& ratio_of) {
 }  // namespace
 
 ScaleEstimate EstimateScale(const Model& model, const Layout& layout, ScaleMethod method) {
-  const std::vector<MarkerSidesMeasured> markers = MeasureSides(ShapeFromModel(model, layout));
+  const std::vector<MeasuredMarkerSides> markers = MeasureSides(ShapeFromModel(model, layout));
   ScaleEstimate estimate;
   estimate.m_per_unit_of = RatiosOf(markers, layout);
   if (estimate.m_per_unit_of.empty()) ThrowNoWholeMarker(model);

@@ -18,12 +18,12 @@ namespace {
 // The mean of fewer markers says little about their part.
 constexpr int kMinMarkersOfPart = 3;
 
-std::vector<MarkerSidesMeasured> MeasureForShape(const MarkerShape& shape, const Layout& layout,
+std::vector<MeasuredMarkerSides> MeasureForShape(const MarkerShape& shape, const Layout& layout,
                                                  const Model* model,
                                                  const AdjustmentUncertainty* uncertainty) {
   if (model == nullptr) return MeasureSides(shape);
   const double units_per_m = CompareShapes(ShapeFromModel(*model, layout), shape).scale;
-  std::vector<MarkerSidesMeasured> markers;
+  std::vector<MeasuredMarkerSides> markers;
   if (uncertainty == nullptr) {
     markers = MeasureSides(*model, layout);
   } else {
@@ -31,24 +31,24 @@ std::vector<MarkerSidesMeasured> MeasureForShape(const MarkerShape& shape, const
     IntersectCorners(uncertainty->apparent_inset_px, &intersected);
     markers = MeasureSides(intersected, layout);
   }
-  for (MarkerSidesMeasured& marker : markers) {
+  for (MeasuredMarkerSides& marker : markers) {
     for (double& side : marker.sides) side /= units_per_m;
   }
   return markers;
 }
 
 // Markers that degenerate to a point have no scale.
-void RemoveDegenerateMarkers(std::vector<MarkerSidesMeasured>* markers) {
-  const auto is_point = [](const MarkerSidesMeasured& marker) {
+void RemoveDegenerateMarkers(std::vector<MeasuredMarkerSides>* markers) {
+  const auto is_point = [](const MeasuredMarkerSides& marker) {
     return *std::min_element(marker.sides.begin(), marker.sides.end()) == 0;
   };
   markers->erase(std::remove_if(markers->begin(), markers->end(), is_point), markers->end());
 }
 
-std::vector<MarkerScale> ScalesOf(const std::vector<MarkerSidesMeasured>& measured,
+std::vector<MarkerScale> ScalesOf(const std::vector<MeasuredMarkerSides>& measured,
                                   const Layout& layout) {
   std::vector<MarkerScale> markers;
-  for (const MarkerSidesMeasured& sides : measured) {
+  for (const MeasuredMarkerSides& sides : measured) {
     MarkerScale marker;
     marker.marker_id = sides.marker_id;
     marker.part = sides.part;
@@ -110,9 +110,9 @@ std::vector<HistogramBin> MakeDeviationHistogram(const std::vector<MarkerScale>&
   return bins;
 }
 
-void CompareWidthAndHeight(const std::vector<MarkerSidesMeasured>& measured, ScaleAudit* audit) {
+void CompareWidthAndHeight(const std::vector<MeasuredMarkerSides>& measured, ScaleAudit* audit) {
   std::vector<double> values, sigmas;
-  for (const MarkerSidesMeasured& marker : measured) {
+  for (const MeasuredMarkerSides& marker : measured) {
     values.push_back(std::log(marker.HorizontalOverVertical()));
     sigmas.push_back(marker.ratio_sigma.value_or(0.0));
   }
@@ -228,7 +228,7 @@ ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Mode
     audit.apparent_inset_px = {uncertainty->apparent_inset_px,
                                uncertainty->apparent_inset_sigma_px};
   }
-  std::vector<MarkerSidesMeasured> measured = MeasureForShape(shape, layout, model, uncertainty);
+  std::vector<MeasuredMarkerSides> measured = MeasureForShape(shape, layout, model, uncertainty);
   RemoveDegenerateMarkers(&measured);
   audit.markers = ScalesOf(measured, layout);
   audit.spread = SpreadOf(audit.markers);

@@ -215,11 +215,11 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
     if (fit == kNumFits) break;
     if (interpolates) {
-      MoveBetweenToFeet(smooth.surface, &parameters);
+      MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
     } else {
       MoveToFeet(smooth.surface, open, &parameters);
     }
-    AddSag(smooth.surface, &parameters);
+    SetSags(smooth.surface, &parameters);
   }
   CheckArea(sorted, ends, smooth.surface);
   FittedSurface result;

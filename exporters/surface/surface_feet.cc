@@ -66,7 +66,7 @@ void MoveToFeet(const SplineSurface& surface, const OpenSides& open,
   }
 }
 
-void AddSag(const SplineSurface& surface, SurfaceParameters* parameters) {
+void SetSags(const SplineSurface& surface, SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
     if (observation.side_m <= 0) continue;
     const SurfaceJet jet = EvaluateJet(surface, observation.u, observation.v);
@@ -81,7 +81,7 @@ void AddSag(const SplineSurface& surface, SurfaceParameters* parameters) {
   }
 }
 
-void MoveBetweenToFeet(const SplineSurface& surface, SurfaceParameters* parameters) {
+void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
     if (observation.marker_id < 0 || !observation.line.empty()) continue;
     MoveToFoot(surface, &observation);

@@ -19,9 +19,9 @@ OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& e
 void MoveToFeet(const SplineSurface& surface, const OpenSides& open, SurfaceParameters* parameters);
 
 // The sag of the markers of a surface that is bent like this: its mean curvature * side^2 / 4.
-void AddSag(const SplineSurface& surface, SurfaceParameters* parameters);
+void SetSags(const SplineSurface& surface, SurfaceParameters* parameters);
 
 // Moves the markers between the lines only, not beyond the edge.
-void MoveBetweenToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
+void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
 }  // namespace velamap

@@ -40,7 +40,7 @@ TEST(WalkOnSurfaceTest, FollowsAGreatCircle) {
 }
 
 TEST(SailTest, HasTheStatedCamberDraftAndTwist) {
-  const SailShape shape;
+  const Mainsail shape;
   const Surface sail = MakeSail(shape);
   for (const double v : {0.1, 0.5, 0.8}) {
     const Eigen::Vector3d luff = sail({0, v}), chord = sail({1, v}) - luff;

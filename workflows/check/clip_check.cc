@@ -216,7 +216,7 @@ class Checker {
       const ClipMap map = MapClip(database_path, layout, options_.num_threads);
       check_.proposal =
           layout.HasMarkers() ? CorrectLayout(map, layout) : ProposeLayout(map, layout);
-      for (const std::string& line : map.doubled) facts.contradictions.push_back(line);
+      for (const std::string& line : map.duplicates) facts.contradictions.push_back(line);
       for (const std::string& line : check_.proposal->contradictions) {
         facts.contradictions.push_back(line);
       }

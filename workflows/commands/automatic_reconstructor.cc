@@ -100,7 +100,8 @@ void Validate(AutomaticReconstructorCommandOptions* options) {
           "--camera_path: missing; --backend colmap cannot adjust an unknown camera: give a "
           "calibration, or --backend both or markers");
     }
-    RefuseKnownCamera(options->typed, options->adjustment.markers, "--camera_path is missing");
+    RefuseFixedCameraWithoutCalibration(options->typed, options->adjustment.markers,
+                                        "--camera_path is missing");
     options->adjustment.markers.find_camera = true;
     CheckOwnFile("--workspace_path",
                  WorkspacePaths{AbsoluteFolder(options->paths.workspace_path)}.Camera());

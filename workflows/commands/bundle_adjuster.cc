@@ -98,8 +98,8 @@ CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layo
   const std::vector<DatabaseImage> images = database.ReadImages();
   RestoreKeypoints(images, options.paths, model);
   if (!database.HasCalibration() && !adjustment->markers.find_camera) {
-    RefuseKnownCamera(options.typed, adjustment->markers,
-                      options.paths.database_path + " was made without");
+    RefuseFixedCameraWithoutCalibration(options.typed, adjustment->markers,
+                                        options.paths.database_path + " was made without");
     LogInfo("{}: made without a calibration; the camera is refined", options.paths.database_path);
     adjustment->markers.find_camera = true;
   }

@@ -95,8 +95,9 @@ void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod meth
   }
 }
 
-void RefuseKnownCamera(const TypedNames& typed, const MarkerAdjustmentOptions& adjustment,
-                       const std::string& missing) {
+void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
+                                         const MarkerAdjustmentOptions& adjustment,
+                                         const std::string& missing) {
   const std::string name = OptionName(&MarkerAdjustmentOptions::find_camera);
   if (adjustment.find_camera || typed.count(name.substr(2)) == 0) return;
   throw InputError(fmt::format(

@@ -23,18 +23,20 @@ void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::
 void WarnOfOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
                                 const std::string& reason);
 
-// Options of videos, where --image_path is a folder of photographs.
+// Refuses options of videos where --image_path is a folder of photographs.
 void RefuseVideoOptions(const CommandOptions& options);
 
-// Options of the adjustment backend and of the registration method that were not chosen.
+// Refuse options of the adjustment backends and of the registration method that were not chosen.
 void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend);
 void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod method);
 
-// --MarkerAdjustment.find_camera 0 where there is no calibration, which `missing` says.
-void RefuseKnownCamera(const TypedNames& typed, const MarkerAdjustmentOptions& adjustment,
-                       const std::string& missing);
+// Refuses --MarkerAdjustment.find_camera 0, which keeps the camera fixed, where there is no
+// calibration. `missing` says so in the message, after "0 needs a calibration, and".
+void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
+                                         const MarkerAdjustmentOptions& adjustment,
+                                         const std::string& missing);
 
-// Options of sections and of a sail's surface, where the layout has no part with lines.
+// Refuses options of sections and of a sail's surface where the layout has no part with lines.
 void RefuseSailOptions(const TypedNames& typed, const Layout& layout);
 
 }  // namespace velamap

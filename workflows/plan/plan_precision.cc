@@ -33,7 +33,7 @@ class Clip {
     image.cam_from_world = cam_from_plan;
     for (const MarkerView& view :
          SeeMarkers(surface_, model.cameras.at(kCameraId), cam_from_plan)) {
-      if (unit_(random_) < view.found) Observe(view, &image);
+      if (unit_(random_) < view.found_share) Observe(view, &image);
     }
     model.images.push_back(std::move(image));
   }

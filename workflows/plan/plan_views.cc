@@ -46,7 +46,7 @@ std::optional<MarkerView> SeeMarker(const ShapeMarker& marker, int num_cells, co
   }
   view.side_px = std::sqrt(QuadArea(c));
   view.narrow_px = QuadArea(c) / longest_px;
-  view.found = FoundShare(view.narrow_px, num_cells);
+  view.found_share = FoundShare(view.narrow_px, num_cells);
   return view;
 }
 
@@ -95,13 +95,13 @@ ViewSummary Summarize(const PlannedSurface& surface,
     for (const MarkerView& marker : view) {
       sides_px.push_back(marker.side_px);
       narrow_px.push_back(marker.narrow_px);
-      summary.found += marker.found;
+      summary.found_share += marker.found_share;
     }
   }
   if (sides_px.empty()) return summary;
   const double num_possible = static_cast<double>(surface.shape.markers.size() * views.size());
-  summary.in_picture = static_cast<double>(sides_px.size()) / num_possible;
-  summary.found /= num_possible;
+  summary.in_picture_share = static_cast<double>(sides_px.size()) / num_possible;
+  summary.found_share /= num_possible;
   summary.median_side_px = Median(std::move(sides_px));
   summary.median_narrow_px = Median(std::move(narrow_px));
   return summary;

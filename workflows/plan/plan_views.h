@@ -24,7 +24,8 @@ struct PlannedPath {
 // How far the lowest marker is below the middle of all, m.
 double LowestDepth(const PlannedSurface& surface);
 
-// At an angle to the right of straight ahead, looking at the middle of the markers.
+// The cam_from_plan pose at an angle to the right of straight ahead, looking at the middle of the
+// markers.
 Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg);
 
 std::vector<double> AnglesOf(const PlannedPath& path);  // degrees, of its views
@@ -33,26 +34,26 @@ std::vector<double> AnglesOf(const PlannedPath& path);  // degrees, of its views
 struct MarkerView {
   int marker_id = 0;
   QuadCorners corners_in_image_px;
-  double side_px = 0.0;    // root of the area
-  double narrow_px = 0.0;  // area / longest side: the height of an oblique view
-  double found = 0.0;      // share of such views in which the importer finds the marker
+  double side_px = 0.0;      // root of the area
+  double narrow_px = 0.0;    // area / longest side: the height of an oblique view
+  double found_share = 0.0;  // of such views: those in which the importer finds the marker
 };
 
 std::vector<MarkerView> SeeMarkers(const PlannedSurface& surface, const Camera& camera,
                                    const Rigid3& cam_from_plan);
 
-// The same in figures: of one view, or of several together.
+// Figures of one view, or of several together.
 struct ViewSummary {
-  double in_picture = 0.0;      // part of the markers
-  double found = 0.0;           // part of the markers that are found
-  double median_side_px = 0.0;  // of the markers in the picture; 0: none
+  double in_picture_share = 0.0;  // of the markers
+  double found_share = 0.0;       // of the markers, in the picture or not
+  double median_side_px = 0.0;    // of the markers in the picture; 0: none
   double median_narrow_px = 0.0;
 };
 
 ViewSummary Summarize(const PlannedSurface& surface,
                       const std::vector<std::vector<MarkerView>>& views);
 
-// Width of a marker of which half of the views are found, px.
+// MarkerView::narrow_px at which a marker is found in half of its views.
 double NarrowPxForHalf(int num_cells);
 
 // 1 sigma of a corner's coordinate, px; `corner_sigma_px` is the sigma on a marker of 20 px.

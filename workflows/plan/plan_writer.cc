@@ -32,7 +32,7 @@ void PrintFacts(const ShootPlan& plan, std::ostream& out) {
                  path.arc_deg, path.num_views);
   WriteFormatted(out, "side_px: {:.1f} (median along the arc)\n", plan.along_path.median_side_px);
   WriteFormatted(out, "found_percent: {:.0f} (of the markers, in a view)\n",
-                 100 * plan.along_path.found);
+                 100 * plan.along_path.found_share);
   WriteFormatted(out, "longest_exposure: {} at {:.2g} m/s\n",
                  ExposureText(plan.shutters.front().exposure_s), plan.shutters.front().speed_m_s);
   if (!plan.plan().precision) return;
@@ -52,7 +52,8 @@ void PrintViews(const ShootPlan& plan, std::ostream& out) {
     const ViewSummary& summary = view.summary;
     WriteFormatted(out, "{:>10.4g}  {:>9.0f}  {:>7.1f}  {:>12.0f}  {:>7.0f}  {:>16}\n",
                    view.distance_m, view.angle_deg, summary.median_side_px,
-                   100 * summary.in_picture, 100 * summary.found, ExposureText(view.exposure_s));
+                   100 * summary.in_picture_share, 100 * summary.found_share,
+                   ExposureText(view.exposure_s));
   }
 }
 
@@ -116,8 +117,9 @@ void WritePlanCsv(const ShootPlan& plan, std::ostream& out) {
                   "distance_sigma_mm", "distance_after_scaling_sigma_mm", "scale_sigma_percent");
   for (const PlannedView& view : plan.views) {
     csv.WriteRecord("view", view.distance_m, view.angle_deg, none, 1,
-                    plan.shutters.front().speed_m_s, view.summary.in_picture, view.summary.found,
-                    view.summary.median_side_px, view.exposure_s, none, none, none, none);
+                    plan.shutters.front().speed_m_s, view.summary.in_picture_share,
+                    view.summary.found_share, view.summary.median_side_px, view.exposure_s, none,
+                    none, none, none);
   }
   for (const PlannedShutter& shutter : plan.shutters) {
     csv.WriteRecord("shutter", plan.path.distance_m, none, plan.path.arc_deg, plan.path.num_views,
@@ -144,7 +146,7 @@ void WriteMarkersCsv(const ShootPlan& plan, std::ostream& out) {
     const Rigid3 cam_from_plan = CameraAt(plan.surface, plan.path, angle_deg);
     for (const MarkerView& view : SeeMarkers(plan.surface, plan.camera, cam_from_plan)) {
       MarkerExpectation& expectation = expectations[view.marker_id];
-      expectation.num_views += view.found;
+      expectation.num_views += view.found_share;
       expectation.sides_px.push_back(view.side_px);
     }
   }

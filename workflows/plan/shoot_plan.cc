@@ -27,7 +27,7 @@ ViewSummary SummarizePath(const PlannedSurface& surface, const Camera& camera,
 }
 
 double NumFound(const PlannedSurface& surface, const ViewSummary& summary) {
-  return summary.found * static_cast<double>(surface.shape.markers.size());
+  return summary.found_share * static_cast<double>(surface.shape.markers.size());
 }
 
 // To two digits.
@@ -49,7 +49,7 @@ double ChooseDistance(const PlannedSurface& surface, const Camera& camera, Plann
   double most = 0.0;
   for (double factor = kNearest; factor < kFarthest; factor *= kStep) {
     path.distance_m = Rounded(factor * extent_m);
-    const double found = SummarizePath(surface, camera, path).found;
+    const double found = SummarizePath(surface, camera, path).found_share;
     distance_and_found.emplace_back(path.distance_m, found);
     most = std::max(most, found);
   }
@@ -68,7 +68,7 @@ double ChooseDistance(const PlannedSurface& surface, const Camera& camera, Plann
 void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
                         const PlannedPath& path, const ViewSummary& summary) {
   const double num_found = NumFound(surface, summary);
-  if (num_found >= kMinMarkersOfView || summary.found > 0.5) return;
+  if (num_found >= kMinMarkersOfView || summary.found_share > 0.5) return;
   PlannedPath straight = path;
   straight.arc_deg = 0;
   straight.num_views = 1;
@@ -76,7 +76,7 @@ void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
   throw InputError(fmt::format(
       "--Plan.distance: from {} m {:.1f} of {} markers are found in a view (from straight ahead, "
       "{:.0f} % are in the picture, {:.1f} px wide where {:.0f} px are needed); give such as {} m",
-      path.distance_m, num_found, surface.shape.markers.size(), 100 * ahead.in_picture,
+      path.distance_m, num_found, surface.shape.markers.size(), 100 * ahead.in_picture_share,
       ahead.median_side_px, NarrowPxForHalf(surface.num_cells),
       ChooseDistance(surface, camera, path)));
 }
@@ -182,10 +182,10 @@ Verdict JudgePlan(const ShootPlan& plan) {
   if (!planned.precision) reasons.Bad("these views give no shape: " + planned.failure);
   const std::string closer = "go closer, film with more pixels, or print larger markers";
   const std::string to_find_more =
-      plan.along_path.in_picture < kGoodShare ? "go farther away, or film in parts" : closer;
-  judge(plan.along_path.found, kGoodShare, kBadShare,
+      plan.along_path.in_picture_share < kGoodShare ? "go farther away, or film in parts" : closer;
+  judge(plan.along_path.found_share, kGoodShare, kBadShare,
         fmt::format("a view finds {} of the markers, {} are in the picture: {}",
-                    Percent(plan.along_path.found), Percent(plan.along_path.in_picture),
+                    Percent(plan.along_path.found_share), Percent(plan.along_path.in_picture_share),
                     to_find_more));
   judge(plan.along_path.median_side_px, kGoodSidePx, kBadSidePx,
         fmt::format("half of the markers are smaller than {:.0f} px: {}",

@@ -76,7 +76,7 @@ FrameCounts CountFrames(const std::vector<DatabaseImage>& images) {
 }
 
 // A quad with a false code is at a different place in every frame and is hardly ever seen twice.
-std::vector<std::string> DescribeDoubled(const FrameCounts& counts) {
+std::vector<std::string> DescribeDuplicates(const FrameCounts& counts) {
   constexpr double kOften = 0.2;
   constexpr int kMinTwice = 3;
   std::vector<std::string> lines;
@@ -140,7 +140,7 @@ class Mapper {
     adjustment_.find_camera = !registration_.has_calibration;
     images_ = WithAllIds(database.ReadImages());
     counts_ = CountFrames(images_);
-    map_.doubled = DescribeDoubled(counts_);
+    map_.duplicates = DescribeDuplicates(counts_);
     images_ = Only(std::move(images_), OftenSeen());
     if (adjustment_.find_camera) {
       cameras_ = FindUnknownCameras(images_, cameras_, layout_, CornerErrorsOf(images_, formation_),

@@ -9,7 +9,7 @@
 
 #include "importer/text/id_ranges.h"
 #include "workflows/proposal/line_comparison.h"
-#include "workflows/proposal/standing_groups.h"
+#include "workflows/proposal/marker_groups.h"
 
 namespace velamap {
 namespace {
@@ -22,7 +22,7 @@ class Corrector {
     proposal_.layout = given;
     CorrectLengths(map, &proposal_);
     std::vector<Ids> rows;
-    for (const StandingGroup& group : FindStandingGroups(map)) {
+    for (const MarkerGroup& group : FindMarkerGroups(map)) {
       for (const auto* of_kind : {&group.rows.horizontal, &group.rows.vertical}) {
         rows.insert(rows.end(), of_kind->begin(), of_kind->end());
       }
@@ -76,7 +76,7 @@ class Corrector {
           "where the layout has them",
           line.line->name, IdRanges(not_found)));
     }
-    if (line.is_against) std::reverse(ids.begin(), ids.end());
+    if (line.runs_against_others) std::reverse(ids.begin(), ids.end());
     line.line->marker_ids = std::move(ids);
   }
 

@@ -10,7 +10,7 @@
 
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
-#include "workflows/proposal/standing_groups.h"
+#include "workflows/proposal/marker_groups.h"
 
 namespace velamap {
 namespace {
@@ -222,10 +222,10 @@ LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known) {
   proposal.contradictions.clear();  // nobody has said how long each marker is
   std::vector<LayoutPart>& parts = proposal.layout.parts;
   int num_with_lines = 0, num_rigid = 0, num_faces = 0;
-  const std::vector<StandingGroup> groups = FindStandingGroups(map);
+  const std::vector<MarkerGroup> groups = FindMarkerGroups(map);
   const std::map<std::size_t, FacePlane> faces = FindFaces(map, groups);
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    const StandingGroup& group = groups[i];
+    const MarkerGroup& group = groups[i];
     const auto name = [](const std::string& word, int number) {
       return number == 1 ? word : fmt::format("{}{}", word, number);
     };

@@ -198,7 +198,7 @@ std::vector<ComparedLine> CompareLines(const std::vector<Ids>& rows, const Ids& 
   }
   Match(rows, seen, &lines);
   for (ComparedLine& line : lines) SettleCrossings(lines, &line);
-  for (ComparedLine& line : lines) line.is_against = RunsAgainstOthers(lines, line);
+  for (ComparedLine& line : lines) line.runs_against_others = RunsAgainstOthers(lines, line);
   return lines;
 }
 
@@ -206,7 +206,7 @@ std::vector<std::string> DescribeDifferences(const std::vector<ComparedLine>& li
                                              const Layout& layout) {
   std::vector<std::string> texts;
   for (const ComparedLine& line : lines) {
-    if (!line.is_against) continue;
+    if (!line.runs_against_others) continue;
     texts.push_back(fmt::format(
         "line {}: it runs opposite to most {} lines of its part; list it from marker {} to {}",
         line.line->name, line.is_vertical ? "vertical" : "horizontal", line.row.back(),

@@ -22,7 +22,8 @@ struct ComparedLine {
   Ids row;                   // as they stand, the way the line runs; empty: not found in the clip
   Ids replaced;              // crossings with other lines, where other markers of these stand
   bool is_reversed = false;  // the row runs from left to right or up, and the line does not
-  bool is_against = false;   // the line does not run as most of its kind and part do
+  // The line runs opposite to most lines of its kind (horizontal or vertical) and part.
+  bool runs_against_others = false;
 };
 
 // Each line of `parts` gets the row that holds most of its markers, at least half of those that are

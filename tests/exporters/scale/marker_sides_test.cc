@@ -111,7 +111,7 @@ TEST(MarkerSides, ApparentInsetIsTakenOut) {
   const auto too_small = MeasureSides(seen, ExampleLayout());
   EXPECT_NEAR(too_small[6].Mean() / 0.1, 1 - 2 * kInset_px / *too_small[6].side_px, 5e-4);
   IntersectCorners(kInset_px, &model);
-  for (const MarkerSidesMeasured& marker : MeasureSides(model, ExampleLayout())) {
+  for (const MeasuredMarkerSides& marker : MeasureSides(model, ExampleLayout())) {
     EXPECT_NEAR(marker.Mean(), MarkerLength(ExampleLayout(), marker.marker_id), 1e-6);
   }
 }
@@ -124,7 +124,7 @@ TEST(MarkerSides, SigmasAreCalibrated) {
     Model model = ExampleModel();
     AddNormalNoise(0.1, &random, &model);
     IntersectCorners(0.0, &model);
-    const MarkerSidesMeasured marker = MeasureSides(model, ExampleLayout())[4];
+    const MeasuredMarkerSides marker = MeasureSides(model, ExampleLayout())[4];
     means.push_back(marker.Mean() / 0.1 - 1);
     ratios.push_back(marker.HorizontalOverVertical() - 1);
     mean_sigmas.push_back(*marker.mean_sigma);

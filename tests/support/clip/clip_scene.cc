@@ -115,8 +115,8 @@ void AddClutter(const Ground& ground, double width_m, double height_m, ClipScene
 
 ClipScene MakeSailScene(const ClipOptions& options) {
   const double luff_m = 6.0 * options.sail_scale;
-  SailShape before{options.sail_scale, 0.10, 15 * kPi / 180};
-  SailShape after = before;
+  Mainsail before{options.sail_scale, 0.10, 15 * kPi / 180};
+  Mainsail after = before;
   // chord * v is at most 0.92 m on a sail of 3 m foot; there the leech moves most.
   after.twist_rad += options.trim_change_m / (0.92 * options.sail_scale);
   after.camber *= std::max(0.3, 1 - options.trim_change_m);

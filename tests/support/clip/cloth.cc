@@ -63,13 +63,13 @@ Eigen::Vector2d WalkOnSurface(const Surface& surface, const Eigen::Vector2d& uv,
   return place;
 }
 
-double SailChord(const SailShape& shape, double v) {
+double SailChord(const Mainsail& shape, double v) {
   // Numeric derivatives at the border ask for places just outside [0, 1].
   const double left = std::max(0.0, 1.0 - v);
   return shape.scale * (kFoot_m * std::pow(left, 0.75) + kHead_m);
 }
 
-Surface MakeSail(const SailShape& shape) {
+Surface MakeSail(const Mainsail& shape) {
   return [shape](const Eigen::Vector2d& uv) -> Eigen::Vector3d {
     const double u = uv.x(), v = uv.y();
     const double depth = u * (1 - u) * (1.6 - u) / 0.288;  // 1 at u = 0.4

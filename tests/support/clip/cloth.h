@@ -18,18 +18,19 @@ using Surface = std::function<Eigen::Vector3d(const Eigen::Vector2d& uv)>;
 Eigen::Vector2d WalkOnSurface(const Surface& surface, const Eigen::Vector2d& uv,
                               const Eigen::Vector2d& offset_m);
 
-// A mainsail in the world frame, m. The luff is at x = 0, the foot along x, and the head up along
-// z. The sail bulges towards -y, where the camera is, and its leech twists towards -y with height.
-struct SailShape {
+// A mainsail in the world frame, m. The foot is along x and the head up along z. The ends of the
+// luff are at x = 0; between them the mast bends towards -x, by 60 mm at scale 1. The sail bulges
+// towards -y, where the camera is, and its leech twists towards -y with height.
+struct Mainsail {
   double scale = 1.0;       // of the size; 1 for a foot of 3 m and a luff of 6 m
   double camber = 0.10;     // depth / chord at the foot; 0.02 more at the head
   double twist_rad = 0.26;  // from foot to head, 15 degrees
 };
 
 // The chord at a height, m. `v` is a fraction of the luff.
-double SailChord(const SailShape& shape, double v);
+double SailChord(const Mainsail& shape, double v);
 
 // The sail; its sections are cubics with the deepest point at 40 % of the chord.
-Surface MakeSail(const SailShape& shape);
+Surface MakeSail(const Mainsail& shape);
 
 }  // namespace velamap

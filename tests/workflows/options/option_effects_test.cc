@@ -72,11 +72,12 @@ TEST(OptionEffectsTest, EachMethodHasItsOptions) {
 TEST(OptionEffectsTest, AnUnknownCameraIsFound) {
   MarkerAdjustmentOptions adjustment;
   const TypedNames typed = {"MarkerAdjustment.find_camera"};
-  EXPECT_NO_THROW(RefuseKnownCamera({}, adjustment, "none is there"));
-  ExpectThrows<InputError>([&] { RefuseKnownCamera(typed, adjustment, "none is there"); },
-                           {"--MarkerAdjustment.find_camera: 0 needs", "none is there"});
+  EXPECT_NO_THROW(RefuseFixedCameraWithoutCalibration({}, adjustment, "none is there"));
+  ExpectThrows<InputError>(
+      [&] { RefuseFixedCameraWithoutCalibration(typed, adjustment, "none is there"); },
+      {"--MarkerAdjustment.find_camera: 0 needs", "none is there"});
   adjustment.find_camera = true;
-  EXPECT_NO_THROW(RefuseKnownCamera(typed, adjustment, "none is there"));
+  EXPECT_NO_THROW(RefuseFixedCameraWithoutCalibration(typed, adjustment, "none is there"));
 }
 
 TEST(OptionEffectsTest, SectionsNeedLines) {

@@ -36,9 +36,9 @@ TEST(PlannedViewTest, SizesFollowDistanceAndAngle) {
   EXPECT_NEAR(view_at(5, 0).side_px, 20.0, 0.01);
   EXPECT_NEAR(view_at(10, 0).side_px, 10.0, 0.01);
   EXPECT_NEAR(view_at(10, 60).narrow_px, 5.0, 0.05);
-  EXPECT_GT(view_at(5, 0).found, 0.99);
-  EXPECT_LT(view_at(10, 0).found, 0.5);
-  EXPECT_LT(view_at(10, 60).found, 0.01);
+  EXPECT_GT(view_at(5, 0).found_share, 0.99);
+  EXPECT_LT(view_at(10, 0).found_share, 0.5);
+  EXPECT_LT(view_at(10, 60).found_share, 0.01);
 }
 
 TEST(PlannedViewTest, BacksAndWhatIsOutsideAreNotSeen) {
@@ -91,7 +91,7 @@ TEST(ShootPlanTest, ChoosesADistanceAndSaysWhatItGives) {
   ShootPlanOptions options;
   options.num_views = 12;
   const ShootPlan plan = MakeShootPlan(PlannedSail(), LinearCamera(), options);
-  EXPECT_GT(plan.along_path.found, 0.8);
+  EXPECT_GT(plan.along_path.found_share, 0.8);
   ASSERT_TRUE(plan.plan().precision);
   EXPECT_GT(plan.plan().precision->MedianMarkerSigma_mm(), 0.1);
   EXPECT_LT(plan.shutters[1].motion_px_s, plan.shutters[0].motion_px_s);

@@ -69,7 +69,7 @@ TEST(ClipMap, HoldsAllMarkersWithTheirSides) {
   ASSERT_EQ(map.bodies.size(), 1u);
   EXPECT_EQ(map.bodies[0].size(), 15u);
   EXPECT_THAT(map.left_out, IsEmpty());
-  EXPECT_THAT(map.doubled, IsEmpty());
+  EXPECT_THAT(map.duplicates, IsEmpty());
   for (const auto& [id, side] : map.sides) {
     EXPECT_LT(std::abs(side.length_m - 0.1), 4 * side.sigma_m) << id;
     EXPECT_LT(side.sigma_m, 1e-3) << id;
@@ -113,7 +113,7 @@ TEST(ClipMap, AnIdThatIsThereTwiceIsNamed) {
       break;
     }
   }
-  EXPECT_THAT(MapOf(scene, Plain()).doubled,
+  EXPECT_THAT(MapOf(scene, Plain()).duplicates,
               testing::ElementsAre(HasSubstr("marker 7 occurs twice")));
 }
 

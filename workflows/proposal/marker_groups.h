@@ -1,4 +1,4 @@
-// Markers of a clip that stand together: lines of a sail, faces of a box, a rigid strip.
+// Groups of neighbouring markers of a clip: the lines of a sail, a face of a box, a rigid strip.
 
 #pragma once
 
@@ -13,14 +13,13 @@
 
 namespace velamap {
 
-// Markers that stand together on one body.
-struct StandingGroup {
+struct MarkerGroup {
   RowGroup rows;
-  std::size_t body_idx = 0;
+  std::size_t body_idx = 0;  // into ClipMap::bodies
 };
 
 // Most markers first.
-std::vector<StandingGroup> FindStandingGroups(const ClipMap& map);
+std::vector<MarkerGroup> FindMarkerGroups(const ClipMap& map);
 
 struct FacePlane {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // in the frame of the body
@@ -31,6 +30,6 @@ struct FacePlane {
 // at least 20 degrees against another flat group of the same body. A single flat group may be a
 // sail on the floor, so it is no face.
 std::map<std::size_t, FacePlane> FindFaces(const ClipMap& map,
-                                           const std::vector<StandingGroup>& groups);
+                                           const std::vector<MarkerGroup>& groups);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-#include "workflows/proposal/standing_groups.h"
+#include "workflows/proposal/marker_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace velamap {
 namespace {
 
 // The plane of a group whose markers lie in one; a sail is more curved than this.
-std::optional<FacePlane> PlaneOf(const ClipMap& map, const StandingGroup& group) {
+std::optional<FacePlane> PlaneOf(const ClipMap& map, const MarkerGroup& group) {
   constexpr double kMaxRms = 0.01;  // of the smaller extent in the plane
   constexpr std::size_t kMinMarkers = 3;
   const std::vector<int> ids = group.rows.MarkerIds();
@@ -30,8 +30,8 @@ std::optional<FacePlane> PlaneOf(const ClipMap& map, const StandingGroup& group)
 
 }  // namespace
 
-std::vector<StandingGroup> FindStandingGroups(const ClipMap& map) {
-  std::vector<StandingGroup> groups;
+std::vector<MarkerGroup> FindMarkerGroups(const ClipMap& map) {
+  std::vector<MarkerGroup> groups;
   for (std::size_t i = 0; i < map.bodies.size(); ++i) {
     for (RowGroup& rows : FindMarkerRows(map.bodies[i])) groups.push_back({std::move(rows), i});
   }
@@ -42,7 +42,7 @@ std::vector<StandingGroup> FindStandingGroups(const ClipMap& map) {
 }
 
 std::map<std::size_t, FacePlane> FindFaces(const ClipMap& map,
-                                           const std::vector<StandingGroup>& groups) {
+                                           const std::vector<MarkerGroup>& groups) {
   constexpr double kMaxCosine = 0.94;  // 20 degrees
   std::map<std::size_t, FacePlane> planes, faces;
   for (std::size_t i = 0; i < groups.size(); ++i) {
