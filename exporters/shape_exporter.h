@@ -66,9 +66,9 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
                                const std::optional<FrameChoice>& frame, ScaleMethod scale_by,
                                const AdjustmentUncertainty* uncertainty = nullptr);
 
-// MeasureShape() and, besides, sections and surfaces: all that WriteShape() writes with the same
-// options. Throws InputError also for bad options, among them folders that WriteShape() would
-// refuse. An option of the surface that the size of the part forbids is left to the caller, see
+// MeasureShape() with sections and surfaces: all that WriteShape() writes with the same options.
+// Throws InputError also for bad options, among them folders that WriteShape() would refuse. An
+// option of the surface that the size of the part forbids is left to the caller, see
 // ShapeExportReport::ThrowSurfaceError().
 ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
                                const ShapeExporterOptions& options,

@@ -22,7 +22,7 @@ namespace velamap {
 // border of a surface with a curvature of 1/m, it is 0.2 mm off.
 struct EdgeOptions {
   double tolerance_mm = 20.0;
-  double num_sigmas = 3.0;  // of the marker's place across the border, where this is more
+  double num_sigmas = 3.0;  // of the marker's position across the border, if that is farther
 
   void Check() const;  // throws InputError that names the option
 };

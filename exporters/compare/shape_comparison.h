@@ -93,8 +93,8 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
                                const Layout& layout, const AlignmentOptions& options,
                                const std::string& part = "", const EdgeOptions& edge = {});
 
-// The factor, 1000 or 0.001, that corrects a mesh read in the wrong one of the units m and mm,
-// according to the sizes of shape and mesh; nothing if the sizes are similar.
+// The factor, 1000 or 0.001, by which to multiply a mesh that was read in mm instead of m or the
+// other way round. Nothing unless the diagonals of shape and mesh differ by a factor above 100.
 std::optional<double> UnitHint(const MarkerShape& shape, const MeshDistance& mesh);
 
 }  // namespace velamap

@@ -22,8 +22,8 @@ std::vector<ReportSection> MakeReportSections(const SectionReport& sections);
 // The parts whose rig is at least partly known.
 std::vector<ReportRig> MakeReportRigs(const SectionReport& sections);
 
-// The surfaces of sails, with about 10 000 triangles each, then those of parts without lines. One
-// of too many triangles is listed without them.
+// The surfaces of sails, with about 10 000 triangles each, then those of parts without lines. A
+// surface with too many triangles for the page is listed without them.
 std::vector<ReportSurface> MakeReportSurfaces(const SailShape& sail, const FreeformShape& freeform);
 
 }  // namespace velamap

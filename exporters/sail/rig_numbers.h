@@ -12,7 +12,8 @@
 
 namespace velamap {
 
-// `centerline` is directed aft. `foot` is the azimuth of the boom or of the lowest section.
+// `centerline` is directed aft. `foot` holds the azimuth of the boom or, without one, of the lowest
+// section.
 RigNumbers ComputeRigNumbers(const PartContext& context,
                              const std::optional<MarkerPair>& centerline,
                              const NumbersWithGradient& foot);

@@ -50,15 +50,15 @@ struct Section {
   double height_m = 0.0;  // of the middle of the chord
   Estimate chord_m;
   Estimate camber;  // largest depth / chord; negative if to windward
-  // Position of the largest depth along the chord / chord, from the luff; nothing below a camber of
-  // 0.1 %.
+  // Distance of the deepest point from the luff, along the chord, / chord; nothing below a camber
+  // of 0.1 %.
   std::optional<Estimate> draft_position;
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
-  // Of the chord about up, from RigNumbers::twist_reference; positive to leeward.
+  // Angle of the chord about up, from RigNumbers::twist_reference; positive to leeward.
   Estimate twist_deg;
-  // Turn about up of the direction in which the curve ends at the leech, from the lowest line's;
-  // positive to leeward.
+  // Angle about up from the direction in which the lowest line ends at the leech to the direction
+  // in which this curve does; positive to leeward.
   Estimate leech_twist_deg;
   Estimate girth_m;  // length of the curve
   SpaceCurve curve;
@@ -91,12 +91,13 @@ struct RigNumbers {
   std::optional<Estimate> luff_bend_m;  // positive forwards: bend of the mast
   std::optional<Estimate> luff_sag_m;   // positive to leeward: sag of the forestay
   std::vector<int> luff_marker_ids;     // from foot to head; empty without bend and sag
-  // About up from the centre line to the boom or, without one, the chord of the lowest line;
-  // positive to leeward.
+  // Angle about up from the centre line to the boom or, without one, to the chord of the lowest
+  // line; positive to leeward. Nothing without a centre line.
   std::optional<Estimate> sheeting_angle_deg;
   std::string aft_reference;    // "centerline" or "lowest section"
   std::string twist_reference;  // "boom", of the first part with lines, or "lowest section"
-  // Of the part's up: "luff"; "lines" without two whole markers of the luff; "z of the frame".
+  // What gives the part's up: "luff"; "lines" without two whole markers of the luff; "z of the
+  // frame" where neither does.
   std::string up_reference;
 };
 
@@ -113,7 +114,7 @@ struct SectionOptions {
   std::vector<double>
       heights_m;          // of additional sections, along up from the frame's origin; finite
   int min_markers = 4;    // whole markers that a line needs
-  std::string part = {};  // of the layout, the only one that is cut; empty for all
+  std::string part = {};  // the only part of the layout to cut; empty for all
 
   void Check() const;  // throws InputError that names the option
 };

@@ -22,7 +22,7 @@ enum SectionNumber {
   kEntryAngle,    // deg
   kExitAngle,     // deg
   kAzimuth,       // deg, of the chord about up, from the reference direction
-  kLeechAzimuth,  // deg, the same of the curve's direction at the leech
+  kLeechAzimuth,  // deg, the same for the curve's direction at the leech
   kGirth,         // m
   kNumSectionNumbers
 };

@@ -19,7 +19,7 @@
 
 namespace velamap {
 
-// Points nearer than this are one point for a curve.
+// Points closer together than this count as one point of a curve.
 inline constexpr double kSamePlace_m = 1e-3;
 
 struct SpaceCurve {

@@ -18,8 +18,8 @@ struct MeasuredMarkerSides {
   std::string part;
   std::array<double, kNumCorners> sides{};  // 1-2, 2-3, 3-4, 4-1; m for a metric shape
   // Relative 1 sigma of the mean side and of the ratio of the horizontal to the vertical sides,
-  // from the noise of the corners in the images with exact cameras. Nothing without a model, or if
-  // fewer than two images see a corner.
+  // from the noise of the corners in the images, as if the cameras were exact. Nothing without a
+  // model, or if fewer than two images see a corner.
   std::optional<double> mean_sigma;
   std::optional<double> ratio_sigma;
   // Mean side in the images, px, weighted by the side itself.

@@ -25,8 +25,8 @@ int NumChecks(const ScaleAudit& audit);
 // Number of distances that are in the shape.
 int NumDistancesFound(const ScaleAudit& audit);
 
-// The one of these that is farthest off: checks that fail come before those that are used, however
-// far these are off. Null if there is none.
+// Of the distances in the shape, the one that is off by most sigmas. A check that fails comes
+// before a scale bar that the adjustment used, however far off that is. Null if there is none.
 const CheckedDistance* WorstDistance(const ScaleAudit& audit);
 
 // `12-45.3 +15.10 mm (+5.2 sigmas)` for a distance that is in the shape.

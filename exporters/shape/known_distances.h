@@ -20,8 +20,8 @@ struct CheckedDistance {
   double DifferenceSigma() const;
   // Difference (result - tape) over its sigma; the distance must be in the shape.
   double DifferenceInSigmas() const;
-  // Whether the distance is only compared with the shape. A scale bar is, too, where the shape has
-  // no sigmas, because only the adjustment that gives them uses scale bars.
+  // Whether the distance is only compared with the shape. So is a scale bar where the shape has no
+  // sigmas, because only the adjustment that gives them uses scale bars.
   bool IsCheck() const { return !known.is_scale_bar || !sigma_m; }
   // Whether it is a check in the shape that is off by more than three sigmas.
   bool FailsAsCheck() const;

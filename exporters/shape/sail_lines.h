@@ -48,8 +48,9 @@ std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const Lay
 // Unit vector from luff to leech, the mean over the horizontal lines of the first part with lines.
 std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout);
 
-// The side of their chords to which the horizontal lines bulge along the unit vector: 1 or -1, or 0
-// below 0.1 % of the chords and if no line has three markers.
+// The side to which the horizontal lines of the first part with lines bulge from their chords: 1
+// along the unit vector `direction`, -1 against it. 0 if their mean depth is below 0.1 % of the
+// chords, or if no line has three markers.
 int BulgeSide(const MarkerShape& shape, const Layout& layout, const Eigen::Vector3d& direction);
 
 }  // namespace velamap

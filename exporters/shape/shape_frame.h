@@ -8,10 +8,10 @@
 //                 the part: the normal of the least-squares plane of its corners, the direction
 //                 from its first to its last marker within that plane, and the third one. If the
 //                 part is less than twice as wide as thick, the mean normal of its markers replaces
-//                 that of the plane. z is the direction nearest to the sail's up, x the other one
-//                 nearest to luff-to-leech; without lines, the up of the markers and first-to-last
-//                 decide. The sail only selects among the directions, so its trim does not rotate
-//                 the frame.
+//                 that of the plane. z is the direction nearest to the sail's up, x the one of the
+//                 other two that is nearest to luff-to-leech; without lines, the up of the markers
+//                 and first-to-last decide. The sail only selects among the directions, so its trim
+//                 does not rotate the frame.
 // Lines:          origin at the luff marker of the lowest horizontal line, x to its leech marker, z
 //                 up, orthogonal to x in the plane of x and a vertical line (from its first to its
 //                 last marker) or, without one, the line from the middle of the lowest to the

@@ -37,8 +37,8 @@ struct ShapeMetrics {
 
   int NumWholeOfLayout() const { return num_markers - static_cast<int>(other_marker_ids.size()); }
   std::optional<double> reconstruction_ratio;  // of the markers that the layout names
-  // The same of the parts with lines of markers, as the thesis counts (4.3.2): the sail without the
-  // hull. Nothing if the layout has no lines.
+  // The same for the parts with lines of markers, as the thesis counts (4.3.2): the sail without
+  // the hull. Nothing if the layout has no lines.
   std::optional<int> num_sail_markers;
   std::optional<double> sail_reconstruction_ratio;
   std::vector<int> missing_marker_ids;  // in the layout but not whole
@@ -49,8 +49,8 @@ struct ShapeMetrics {
 };
 
 // Compares markers with their printed sides in `layout`. Sigmas are known if `covariance`, of the
-// corners of the shape, has all whole markers. Throws DataError if the shape has markers, and none
-// of them is one that the layout names.
+// corners of the shape, has all whole markers. Throws DataError if the shape has markers and the
+// layout names none of them.
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
                                  const PointCovariance* covariance = nullptr);
 
@@ -68,8 +68,8 @@ struct ShapeComparison {
   double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
   // Expected distance_m.rms and distance_after_scaling_m.rms if the reference were exact: roots of
-  // the mean variance of the points after these alignments. Without a covariance, the first one is
-  // that of the sigmas of the points, if the shape has them.
+  // the mean variance of the points after these alignments. Without a covariance, the first one
+  // comes from the sigmas of the points, if the shape has them.
   std::optional<double> distance_sigma_m;
   std::optional<double> distance_after_scaling_sigma_m;
   std::vector<MarkerDistance> markers;  // by id

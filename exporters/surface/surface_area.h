@@ -1,4 +1,4 @@
-// Whether the area of a surface is what its markers suggest.
+// Compares the area of a surface with the area that its markers suggest.
 
 #pragma once
 

@@ -9,8 +9,9 @@
 
 namespace velamap {
 
-// Adds the notes that `fit` returns to `notes`, or that `part` has no surface and why. Keeps the
-// first error that is not of the data, DataError, in `first_error`.
+// Adds the notes that `fit` returns to `notes` or, if it throws, one that says why `part` has no
+// surface. The first exception other than DataError is kept in `first_error`, because the markers
+// are not to blame for it.
 void TryFitSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
                    std::vector<std::string>* notes, std::exception_ptr* first_error);
 

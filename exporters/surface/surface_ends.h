@@ -19,8 +19,9 @@ struct SortedInput {
   std::vector<std::string> notes;
 };
 
-// Where the surface ends: where the options say, else where the layout does. Removes the distances
-// of the lines that do not apply, and notes the edges that it cannot reach.
+// Returns the options with the ends of the layout where they name none themselves. In `sorted`, it
+// removes the lines' distances to the edge that do not apply, because an option replaces them or
+// the edge is too far away, and notes the edges that the surface cannot reach.
 SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& options,
                            SortedInput* sorted);
 

@@ -13,15 +13,18 @@ struct OpenSides {
 };
 OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& edges);
 
-// Moves the markers to their feet on the surface, also beyond its edge, and then u and v of all so
-// that those of the markers go from 0 to 1 again, but for the open sides, which stay. Chord lengths
-// differ between lines that begin at different distances from the luff; feet do not.
+// Moves the markers to their feet on the surface, also beyond its edge. Then rescales u and v of
+// all observations so that the markers span 0 to 1 again, except at open sides, where 0 or 1 is an
+// edge beyond the markers and stays. The chord length of a marker depends on where its line begins;
+// its foot does not.
 void MoveToFeet(const SplineSurface& surface, const OpenSides& open, SurfaceParameters* parameters);
 
-// The sag of the markers of a surface that is bent like this: its mean curvature * side^2 / 4.
+// Sets the sag of each marker with a known side: side^2 / 4 times the mean curvature of the surface
+// there, which is how far the cloth at the middle of a marker lies from the mean of its corners.
 void SetSags(const SplineSurface& surface, SurfaceParameters* parameters);
 
-// Moves the markers between the lines only, not beyond the edge.
+// Moves only the markers on no line of the fit, and none beyond the edge: for surfaces that
+// interpolate, whose lines keep their chord lengths.
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
 }  // namespace velamap

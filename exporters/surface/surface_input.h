@@ -25,7 +25,8 @@ struct SurfaceMarker {
 struct SurfaceLine {
   std::string name;
   std::vector<std::optional<SurfaceMarker>> markers;
-  // From the first and the last marker of the layout to the edge of the cloth, where it is known.
+  // Distances from the first and the last marker that the layout lists to the edge of the cloth,
+  // where it is known.
   std::optional<double> luff_offset_m{}, leech_offset_m{};
 };
 
@@ -38,10 +39,11 @@ struct SurfaceEdges {
 struct SurfaceInput {
   std::vector<SurfaceLine> lines;      // from foot to head
   std::vector<SurfaceMarker> markers;  // markers of the part on no horizontal line
-  // From the lowest and the highest line of the layout to the edge of the cloth.
+  // Distances from the lowest and the highest line that the layout lists to the edge of the cloth.
   std::optional<double> foot_offset_m{}, head_offset_m{};
   SurfaceEdges edges{};  // by lines of markers on them
-  // Of luff and leech, why the line on it gives no edge; empty if it does or there is none.
+  // Why the line of markers on the luff or leech gives no edge; empty if it gives one, or if there
+  // is no such line.
   std::string luff_note{}, leech_note{};
 };
 

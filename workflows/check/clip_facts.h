@@ -33,7 +33,7 @@ struct ClipFacts {
   int num_frames = 0;  // of the clip; 0 if it does not say
   int num_frames_read = 0;
   int num_frames_with_few_markers = 0;  // fewer than four
-  int num_frames_damaged = 0;           // in the file, of those looked at, and not among those read
+  int num_frames_damaged = 0;           // that should have been read, but are damaged in the file
   bool is_video = false;
   int width_px = 0, height_px = 0;
 

@@ -12,9 +12,9 @@ namespace velamap {
 
 struct MarkerLight {
   double black = 0.0;  // grey level of the border, 0 to 255
-  double white = 0.0;  // and of the paper around it
-  // Sigmas of the blur across the two pairs of opposite sides, px; the larger one holds the motion
-  // during the exposure.
+  double white = 0.0;  // grey level of the paper around it
+  // Sigmas of the blur across the two pairs of opposite sides, px; the larger one includes the
+  // motion during the exposure.
   double least_blur_px = 0.0;
   double most_blur_px = 0.0;
 };

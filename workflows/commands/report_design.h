@@ -28,9 +28,10 @@ void CheckDesign(const DesignOptions& options, const TypedNames& typed);
 // Null without a path. Throws the errors of ReadMesh().
 std::unique_ptr<MeshDistance> ReadDesign(const DesignOptions& options);
 
-// Fits the markers of the sail to `design`, read from `path`, and adds to each section of `input`,
-// which are those of `shape`, where the design lies in its plane. The shape does not depend on
-// this, so that a design that cannot be compared is a warning.
+// Fits the markers of the sail to `design`, which ReadDesign(options) has read, and adds to each
+// section of `input` the profile of the design there. The sections of `input` are those of `shape`,
+// in the same order. The shape does not depend on this, so a design that cannot be compared only
+// gives a warning.
 void AddDesign(const DesignOptions& options, const MeshDistance& design,
                const ShapeExportReport& shape, const Layout& layout,
                const SectionOptions& section_options, ReportInput* input);

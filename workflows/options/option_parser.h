@@ -15,8 +15,8 @@
 
 namespace velamap {
 
-// The options that were typed on the command line, by their first names without dashes. Unlike
-// those of a project file, they cannot be meant for another command.
+// The options that were typed on the command line, each by the first of its names, without dashes.
+// Unlike those of a project file, they cannot be meant for another command.
 using TypedNames = std::set<std::string>;
 
 struct CommandSyntax {
@@ -36,12 +36,13 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax);
 
 // Sets the options that `arguments`, which follow the command's name, and their project file give.
 // The file may hold `known_names`, the options of all commands, so that one file serves them all.
-// What neither gives comes from the preset, whose effect is then known. Fills `syntax.typed`.
-// Returns false, having set nothing, when help is asked for (help_text.h). Throws InputError:
-// an option that is unknown (names the nearest), given twice or by two of its names, without a
-// value, as a path with an empty one, with one of another type or beyond its range, or required and
-// missing; a project file that is missing or malformed, or holds an unknown key; an output that is
-// one of the inputs (path_check.h).
+// What neither gives comes from the preset, whose Preset::effect is set. Fills `syntax.typed`.
+// Returns false, having set nothing, when help is asked for (help_text.h). Throws InputError for
+// - an option that is unknown (the message names the nearest one), given twice or by two of its
+//   names, or required and missing;
+// - a value that is missing, of another type, beyond its range, or empty for a path;
+// - a project file that is missing or malformed, or holds an unknown key;
+// - paths that CompletePaths() (path_check.h) refuses.
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names);
 

@@ -19,11 +19,11 @@ void CheckInputKind(const std::string& used_by, const std::filesystem::path& pat
 std::vector<std::string> PathsFromText(const std::string& text, const std::string& option,
                                        const std::string& example);
 
-// Once the options are set: sets outputs that are left out to the file beside another output, and
-// throws InputError where CheckOutputs() (importer/base/replacement.h) does, for an input that is a
-// pipe or a device, for an output that is a pipe or a folder, and for a file of the user's where an
-// output goes that is left out. Registers the paths, so that logs
-// and reports leave out their folders (importer/text/shown_text.h).
+// Called once the options are set. An output that is left out goes to its default file beside
+// another output. Registers the paths, so that logs and reports leave out their folders
+// (importer/text/shown_text.h). Throws InputError for an input that is a pipe or a device, for an
+// output that is a pipe or, where a file is needed, a folder, and where CheckOutputs()
+// (importer/base/replacement.h) does, for example if the user has a file of a default name.
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap

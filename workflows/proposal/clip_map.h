@@ -22,7 +22,7 @@ struct ClipMap {
   std::vector<ShapePoints> bodies;
   std::map<int, MarkerSide> sides;      // of the markers of the bodies
   std::map<int, std::string> left_out;  // why an id is on no body
-  std::vector<std::string> duplicates;  // ids that are on the object twice, one line each
+  std::vector<std::string> duplicates;  // one line for each id that is on the object twice
 };
 
 // Registers and adjusts the images of a database. Uses only the dictionary and marker lengths of

@@ -12,7 +12,7 @@ namespace velamap {
 
 struct LayoutProposal {
   Layout layout;
-  // What was measured and what is not sure, one line each; they go before the file.
+  // What was measured and what is not sure, one line each: the comments at the top of the file.
   std::vector<std::string> notes;
   // Where the given layout is wrong, one line each.
   std::vector<std::string> contradictions;

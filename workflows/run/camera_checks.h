@@ -37,8 +37,8 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
 
 // Warns where the images were not taken by one steady camera; throws DataError where that camera
 // was to be found (`options.find_camera`) and its focal length changes. `seed` is the model before
-// its marker-aware adjustment, null without one. Of a step of the focal length, the verdict has
-// only one that is real.
+// its marker-aware adjustment, null without one. The verdict holds a step of the focal length only
+// if it is real.
 SteadinessVerdict CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
                                   const CornerErrors& corner_errors, const Model* seed,
                                   const Model& model);

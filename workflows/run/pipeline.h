@@ -31,9 +31,9 @@ struct SeedResult {
   std::optional<ReportClip> clip;        // of a video
 };
 
-// The part of `video` that the thesis's search around a named central frame can reach (3.4.1), so
-// that the rest is not decoded. All of it without a named frame, for the global registration, and
-// for an unordered one.
+// The part of `video` that the thesis's search around a central frame with a given number can reach
+// (3.4.1), so that the rest is not decoded. All of it without such a number, for the global
+// registration, and if the frames count as unordered.
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration);
 
 // ImportMarkers() with a progress bar; logs what was found and warns of anything unusual.

@@ -38,7 +38,7 @@ struct ClipOptions {
   double fps = 30.0;
   double distance_m = 6.0;  // from the camera to the middle of the scene
   double angle_deg = 0.0;   // between the viewing direction and the frontal view
-  double drift_deg = 0.0;   // angle that the camera circles to either side; 0: each scene's own
+  double drift_deg = 0.0;   // angle by which the camera circles to either side; 0: scene's own
   // Motion of the board in the thesis's Figure 4.3, 'a' to 'h'. Only for kBoard.
   char motion = 'd';
   double sail_scale = 1.0;  // of the sail alone; fewer markers fit on a small sail

@@ -19,7 +19,7 @@ struct SurfaceRenderOptions {
   double blur_px = 0.7;         // sigma of the lens blur, in addition to the area of a pixel
   double motion_blur_px = 0.0;  // motion during the exposure; its direction differs between frames
   double noise = 2.0;           // standard deviation of the read noise, in light (0 to 255)
-  double shot_noise = 0.0;      // the same of the shot noise at full light
+  double shot_noise = 0.0;      // standard deviation of the shot noise at full light
   int num_reflections = 0;      // bright patches on the scene's last sheet that hide markers
   double glare = 0.0;           // light scattered over all pixels, as a fraction of full light
   double ink_level = 38.0 / 255;     // reflectance of printed cells
