@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "importer/base/statistics.h"
-
 namespace velamap {
 namespace {
 

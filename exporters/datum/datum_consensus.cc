@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "exporters/datum/datum_fit.h"
 #include "importer/geometry/ransac.h"
 
 namespace velamap {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "exporters/datum/datum_fit.h"
+#include "exporters/datum/datum_pose.h"
 
 namespace velamap {
 

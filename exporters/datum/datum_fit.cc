@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
+#include "exporters/datum/datum_pose.h"
 #include "importer/geometry/symmetric_eigen.h"
 #include "importer/layout/known_point.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/datum/datum_pose.h"
+#include "exporters/datum/datum_equations.h"
 
 namespace velamap {
 

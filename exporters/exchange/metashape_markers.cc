@@ -1,12 +1,10 @@
 #include "exporters/exchange/metashape_markers.h"
 
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
-#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "exporters/scale/robust_fit.h"
+
 namespace velamap {
 namespace {
 

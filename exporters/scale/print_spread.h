@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "exporters/scale/robust_fit.h"
-
 namespace velamap {
 
 struct SpreadSample {

@@ -1,7 +1,6 @@
 #include "exporters/surface/surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>

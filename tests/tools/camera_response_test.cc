@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
-#include "importer/base/statistics.h"
 #include "tests/support/render/picture_effects.h"
 
 namespace velamap {

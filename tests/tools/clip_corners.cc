@@ -1,7 +1,6 @@
 // clip_corners: how far the corners that velamap found in a rendered clip are from the truth.
 
 #include <fstream>
-#include <iostream>
 #include <vector>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 // table is printed by the tool corner_accuracy.
 
 #include <cmath>
-#include <iostream>
 
 #include <gtest/gtest.h>
 

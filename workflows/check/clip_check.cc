@@ -12,7 +12,6 @@
 #include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
 #include "importer/marker_importer.h"
-#include "importer/track/frame_detector.h"
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"

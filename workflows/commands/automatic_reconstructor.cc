@@ -2,7 +2,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -24,8 +24,8 @@
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/thesis_registration.h"
 #include "workflows/run/logging.h"
+#include "workflows/run/pipeline.h"
 #include "workflows/run/report_input.h"
-#include "workflows/run/summary.h"
 #include "workflows/run/version.h"
 
 namespace velamap {
