@@ -16,7 +16,8 @@ std::string ComparisonTitle(const ComparisonPageInput& input);
 std::string NumberName(const std::string& number);
 std::string NumberUnit(const std::string& number);
 
-// The name of a section, after that of its part where the series has sections of several parts.
+// The name of a section, preceded by the name of its part if the series has sections of several
+// parts.
 std::string SectionName(const std::vector<Comparison>& series, const std::string& part,
                         const std::string& section);
 

@@ -52,8 +52,8 @@ struct SurfaceResidual {
   int marker_id = 0;
   std::string line;         // empty for a marker on no line of the fit
   double u = 0.0, v = 0.0;  // of the marker's foot on the surface
-  // From the surface to the marker, along the normal. A marker is where the cloth is between its
-  // corners: the mean of the corners, moved out by the bend of the surface.
+  // Distance from the surface to the marker, along the normal. The place of a marker is where the
+  // cloth is between its corners: the mean of the corners, moved out by the bend of the surface.
   double distance_m = 0.0;
   double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
   bool is_used = false;        // false for markers outside the edge, which the fit ignores

@@ -21,7 +21,7 @@ struct ClipCheckOptions {
   std::optional<Layout> layout;  // nothing: the dictionary is found by trying
   std::optional<Camera> camera;  // with a layout: the precision is found by a reconstruction
   std::string camera_path;       // for messages only
-  // Where the markers stand is found by a reconstruction, with or without a camera.
+  // Find where the markers are by a reconstruction, with or without a camera, and propose a layout.
   bool proposes_layout = false;
   ArucoDetectionOptions detection;
   VideoOptions video;

@@ -22,7 +22,8 @@ struct DesignOptions {
 // --design_path and --design_unit.
 OptionGroup DescribeOptions(DesignOptions* options);
 
-// Throws InputError if the path is not that of a surface, and for a unit that would change nothing.
+// Throws InputError if the path does not name a surface (IsMeshPath()), and for a unit that would
+// change nothing.
 void CheckDesign(const DesignOptions& options, const TypedNames& typed);
 
 // Null without a path. Throws the errors of ReadMesh().

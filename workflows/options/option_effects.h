@@ -19,7 +19,7 @@ namespace velamap {
 void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
                                 const std::string& reason);
 
-// The same as a warning: for what a call with other options may need, such as a layout.
+// Only warns. For options that take effect once the call gets what it lacks, such as a layout.
 void WarnOfOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
                                 const std::string& reason);
 

@@ -21,7 +21,7 @@ struct Preset {
 
 Option PresetOption(Preset* preset);
 
-// By the names of the options, as on the command line.
+// The values that a preset sets, by the names of the options, as on the command line.
 const std::map<std::string, std::string>& PresetValues(PresetName name);
 
 // Logs what the preset has set.

@@ -39,7 +39,7 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
 // ImportMarkers() with a progress bar; logs what was found and warns of anything unusual.
 ImportReport ImportImages(const MarkerImporterOptions& options);
 
-// Throws InputError, naming both dictionaries, if the layout's is not that of the import.
+// Throws InputError, naming both dictionaries, if the layout and the database have different ones.
 void CheckLayoutOfDatabase(const ColmapDatabase& database, const std::string& database_path,
                            const Layout& layout);
 

@@ -18,7 +18,7 @@ void LensBlur(double sigma_px, cv::Mat* image);
 
 // Adds the same Gaussian noise to all three channels, because a video keeps only the luma of the
 // sensor's noise. Its variance is sigma^2 (read noise) plus shot_sigma^2 * light / 255 (shot
-// noise), where the light is that of the middle channel.
+// noise), with the light of the middle channel.
 void AddNoise(double sigma, double shot_sigma, std::uint64_t seed, cv::Mat* image);
 
 }  // namespace velamap
