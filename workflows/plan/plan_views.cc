@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Geometry>
 
@@ -85,6 +86,25 @@ std::vector<MarkerView> SeeMarkers(const PlannedSurface& surface, const Camera& 
     if (view) views.push_back(*view);
   }
   return views;
+}
+
+std::vector<int> MarkersOutsidePicture(const PlannedSurface& surface, const Camera& camera,
+                                       const Rigid3& cam_from_plan) {
+  // A marker that is seen nearly edge-on is not found in the picture either.
+  constexpr double kLeastCosine = 0.1;
+  std::set<int> seen;
+  for (const MarkerView& view : SeeMarkers(surface, camera, cam_from_plan)) {
+    seen.insert(view.marker_id);
+  }
+  const Eigen::Vector3d camera_in_plan_m = Inverse(cam_from_plan).translation;
+  std::vector<int> outside;
+  for (const ShapeMarker& marker : surface.shape.markers) {
+    const Eigen::Vector3d to_camera = (camera_in_plan_m - *marker.x_in_shape_m[0]).normalized();
+    if (MarkerNormal(marker).dot(to_camera) > kLeastCosine && seen.count(marker.marker_id) == 0) {
+      outside.push_back(marker.marker_id);
+    }
+  }
+  return outside;
 }
 
 ViewSummary Summarize(const PlannedSurface& surface,

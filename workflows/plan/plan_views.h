@@ -42,6 +42,10 @@ struct MarkerView {
 std::vector<MarkerView> SeeMarkers(const PlannedSurface& surface, const Camera& camera,
                                    const Rigid3& cam_from_plan);
 
+// The markers whose face a view would show, but that are not wholly in its picture.
+std::vector<int> MarkersOutsidePicture(const PlannedSurface& surface, const Camera& camera,
+                                       const Rigid3& cam_from_plan);
+
 // Figures of one view, or of several together.
 struct ViewSummary {
   double in_picture_share = 0.0;  // of the markers

@@ -7,8 +7,6 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
-#include "importer/text/id_ranges.h"
-#include "workflows/check/clip_limits.h"
 
 namespace velamap {
 namespace {
@@ -36,9 +34,21 @@ double Rounded(double value) {
   return step * std::round(value / step);
 }
 
-// The nearest distance at which nearly as many markers are found along the arc as at the best.
+// Whether no view of the path leaves out a marker whose face it would show.
+bool HoldsAllMarkers(const PlannedSurface& surface, const Camera& camera, const PlannedPath& path) {
+  const std::vector<double> angles_deg = AnglesOf(path);
+  return std::all_of(angles_deg.begin(), angles_deg.end(), [&](double angle_deg) {
+    return MarkersOutsidePicture(surface, camera, CameraAt(surface, path, angle_deg)).empty();
+  });
+}
+
+// The nearest distance at which all markers are in the picture and nearly as many are found along
+// the arc as at the best such distance. Where the markers are far too small from there, the sail
+// has to be filmed in parts, and the best distance of all counts.
 double ChooseDistance(const PlannedSurface& surface, const Camera& camera, PlannedPath path) {
   constexpr double kNearest = 0.3, kFarthest = 60.0, kStep = 1.08, kNearlyAll = 0.98;
+  constexpr double kFarTooFew = 0.5;  // of those that the best distance finds
+  const int num_views = path.num_views;
   double extent_m = 0.0;
   for (const ShapeMarker& marker : surface.shape.markers) {
     extent_m = std::max(
@@ -60,8 +70,21 @@ double ChooseDistance(const PlannedSurface& surface, const Camera& camera, Plann
         "--marker_length: at no distance does the picture hold enough markers that are large "
         "enough to be found; give larger or fewer markers, or a camera with more pixels");
   }
-  return std::find_if(distance_and_found.begin(), distance_and_found.end(),
-                      [&](const auto& entry) { return entry.second >= kNearlyAll * most; })
+  const auto found_is_less = [](const auto& a, const auto& b) { return a.second < b.second; };
+  path.num_views = num_views;
+  auto begin =
+      std::find_if(distance_and_found.begin(), distance_and_found.end(), [&](const auto& entry) {
+        path.distance_m = entry.first;
+        return HoldsAllMarkers(surface, camera, path);
+      });
+  const auto end = distance_and_found.end();
+  auto best = std::max_element(begin, end, found_is_less);
+  if (best == end || best->second < kFarTooFew * most) {
+    begin = distance_and_found.begin();
+    best = std::max_element(begin, end, found_is_less);
+  }
+  return std::find_if(begin, end,
+                      [&](const auto& entry) { return entry.second >= kNearlyAll * best->second; })
       ->first;
 }
 
@@ -131,8 +154,6 @@ std::vector<PlannedVariant> MakeVariants(const PlannedPath& path, const PlannedS
   return variants;
 }
 
-std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
-
 }  // namespace
 
 ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
@@ -170,54 +191,6 @@ ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
   }
   plan.variants = MakeVariants(plan.path, surface, camera, options);
   return plan;
-}
-
-Verdict JudgePlan(const ShootPlan& plan) {
-  constexpr double kGoodShare = 0.8, kBadShare = 0.5, kShortest_s = 1.0 / 4000;
-  VerdictReasons reasons;
-  const auto judge = [&](double value, double good, double bad, const std::string& text) {
-    if (value < good) reasons.Add(value < bad ? ReportStatus::kBad : ReportStatus::kCheck, text);
-  };
-  const PlannedVariant& planned = plan.plan();
-  if (!planned.precision) reasons.Bad("these views give no shape: " + planned.failure);
-  const std::string closer = "go closer, film with more pixels, or print larger markers";
-  const std::string to_find_more =
-      plan.along_path.in_picture_share < kGoodShare ? "go farther away, or film in parts" : closer;
-  judge(plan.along_path.found_share, kGoodShare, kBadShare,
-        fmt::format("a view finds {} of the markers, {} are in the picture: {}",
-                    Percent(plan.along_path.found_share), Percent(plan.along_path.in_picture_share),
-                    to_find_more));
-  judge(plan.along_path.median_side_px, kGoodSidePx, kBadSidePx,
-        fmt::format("half of the markers are smaller than {:.0f} px: {}",
-                    plan.along_path.median_side_px, closer));
-  judge(plan.path.arc_deg, kGoodParallax_deg, kBadParallax_deg,
-        fmt::format("the camera moves only {:.0f} degrees around the markers, which hardly "
-                    "determines depth: plan a larger arc",
-                    plan.path.arc_deg));
-  if (plan.shutters.front().exposure_s < kShortest_s) {
-    reasons.Check("few cameras have such a short exposure: go slower, or hold the camera steadier");
-  }
-  if (!plan.surface.markers_left_out.empty()) {
-    reasons.Check(fmt::format(
-        plan.surface.is_of_shape
-            ? "not planned, because the shape does not hold them: {}: give a shape with all markers"
-            : "not planned, because the layout does not say where they are: {}: give --shape_path",
-        IdRanges(plan.surface.markers_left_out)));
-  }
-  if (planned.precision) {
-    std::vector<int> missing;
-    for (const ShapeMarker& marker : plan.surface.shape.markers) {
-      if (planned.precision->marker_sigma_mm.count(marker.marker_id) == 0) {
-        missing.push_back(marker.marker_id);
-      }
-    }
-    if (!missing.empty()) {
-      reasons.Check(
-          fmt::format("found in fewer than two views: {}: {}", IdRanges(missing), to_find_more));
-    }
-    for (const std::string& warning : planned.precision->warnings) reasons.Check(warning);
-  }
-  return reasons.Take();
 }
 
 }  // namespace velamap

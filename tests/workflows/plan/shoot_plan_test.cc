@@ -116,6 +116,7 @@ TEST(ShootPlanTest, DistanceWithoutMarkersIsRefusedWithABetterOne) {
 
 TEST(JudgePlanTest, NarrowArcsAndSmallMarkersAreNamed) {
   ShootPlan plan;
+  plan.camera = LinearCamera();
   plan.path = {5, 5, 1, 10};
   plan.along_path = {1.0, 0.6, 15, 15};
   plan.shutters = {{1, 100, 0.01}};
@@ -127,21 +128,70 @@ TEST(JudgePlanTest, NarrowArcsAndSmallMarkersAreNamed) {
 
 TEST(JudgePlanTest, RemediesFitTheirCauses) {
   ShootPlan plan;
-  plan.path = {5, 80, 1, 10};
+  plan.surface = PlannedSail();
+  plan.camera = LinearCamera();
+  plan.along_path = {1.0, 1.0, 40, 40};
   plan.shutters = {{1, 100, 0.01}};
-  plan.variants = {{"plan", plan.path, PlanPrecision(), ""}};
-  plan.surface.shape.markers.resize(1);
-  plan.surface.markers_left_out = {7};
-  const auto text = [&](double in_picture, bool is_of_shape) {
-    plan.along_path = {in_picture, in_picture, 40, 40};
-    plan.surface.is_of_shape = is_of_shape;
+  const auto text = [&](double distance_m) {
+    plan.path = {distance_m, 80, 1, 10};
+    plan.variants = {{"plan", plan.path, PlanPrecision(), ""}};  // no marker is reached
     std::string texts;
     for (const VerdictReason& reason : JudgePlan(plan).reasons) texts += reason.text + "\n";
     return texts;
   };
-  EXPECT_THAT(text(0.9, false), AllOf(HasSubstr("give --shape_path"), HasSubstr("0: go closer")));
-  EXPECT_THAT(text(0.5, true), AllOf(HasSubstr("the shape does not hold them: 7"),
-                                     HasSubstr("0: go farther away"), Not(HasSubstr("closer"))));
+  EXPECT_THAT(text(12), AllOf(HasSubstr("they are too small: 0-"), HasSubstr("go closer"),
+                              Not(HasSubstr("farther"))));
+  EXPECT_THAT(text(1),
+              AllOf(HasSubstr("they are outside the picture: "),
+                    HasSubstr("go farther away or use a wider lens"), Not(HasSubstr("closer"))));
+  EXPECT_THAT(text(-5), AllOf(HasSubstr("they are turned away from the camera: 0-"),
+                              Not(HasSubstr("closer")), Not(HasSubstr("farther"))));
+  plan.surface.markers_left_out = {7};
+  EXPECT_THAT(text(5), HasSubstr("give --shape_path"));
+  plan.surface.is_of_shape = true;
+  EXPECT_THAT(text(5), HasSubstr("the shape does not hold them: 7"));
+}
+
+// Markers leave the picture from any closer by, so larger ones have to be printed.
+TEST(JudgePlanTest, GoingCloserIsNoRemedyWhereMarkersFillThePicture) {
+  ShootPlan plan;
+  plan.surface = PlannedSail();
+  plan.camera = LinearCamera();
+  plan.along_path = {1.0, 0.7, 18, 18};
+  plan.path = {4, 80, 1, 10};
+  plan.shutters = {{1, 100, 0.01}};
+  plan.variants = {{"plan", plan.path, std::nullopt, "two views needed"}};
+  std::string texts;
+  for (const VerdictReason& reason : JudgePlan(plan).reasons) texts += reason.text + "\n";
+  EXPECT_THAT(texts, AllOf(HasSubstr("smaller than 18 px: film with more pixels"),
+                           Not(HasSubstr("closer"))));
+}
+
+// A camera of 60 degrees has to go farther away for all of this sail than to find most markers.
+TEST(ShootPlanTest, ChosenDistanceHoldsAllMarkersInThePicture) {
+  SailPlacementOptions sail;
+  sail.luff_m = 6;
+  sail.foot_m = 3;
+  sail.leech_m = 6.2;
+  const Placement placement = PlaceOnSail(sail, 100, 150, 0);
+  Layout layout = MakeLayout("DICT_4X4_250", 0.1);
+  layout.parts = {PartOfPlacement(placement)};
+  ShootPlanOptions options;
+  options.field_of_view_deg = 60;
+  options.num_views = 12;
+  const ShootPlan plan = MakeShootPlan(SurfaceOfPlacement(placement, layout, 0.1, 10),
+                                       CameraOfFieldOfView(options), options);
+  for (const double angle_deg : AnglesOf(plan.path)) {
+    EXPECT_TRUE(MarkersOutsidePicture(plan.surface, plan.camera,
+                                      CameraAt(plan.surface, plan.path, angle_deg))
+                    .empty())
+        << angle_deg;
+  }
+  EXPECT_GT(plan.along_path.in_picture_share, 0.99);
+  EXPECT_GT(plan.along_path.found_share, 0.8);
+  for (const VerdictReason& reason : JudgePlan(plan).reasons) {
+    EXPECT_THAT(reason.text, Not(HasSubstr("closer")));
+  }
 }
 
 }  // namespace
