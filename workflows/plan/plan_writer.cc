@@ -92,12 +92,19 @@ std::string ExposureText(double exposure_s) {
 }
 
 std::string RecommendationText(const ShootPlan& plan) {
-  const PlannedShutter& shutter = plan.shutters.front();
-  return fmt::format(
+  if (!plan.recommended) return "none, until the bad reasons of the verdict are seen to";
+  const PlannedPath& path = plan.recommended->path;
+  const PlannedShutter& shutter = plan.recommended->shutter;
+  const std::string text = fmt::format(
       "go {:.0f} degrees around the markers at {:.4g} m, {} views or more, shutter {} or shorter "
       "at {:.2g} m/s",
-      plan.path.arc_deg, plan.path.distance_m, plan.path.num_views,
-      ExposureText(shutter.exposure_s), shutter.speed_m_s);
+      path.arc_deg, path.distance_m, path.num_views, ExposureText(shutter.exposure_s),
+      shutter.speed_m_s);
+  if (path.arc_deg == plan.path.arc_deg && path.distance_m == plan.path.distance_m) return text;
+  return text + fmt::format(
+                    " (another path than the planned one: --Plan.arc {:.4g} "
+                    "--Plan.distance {:.4g} plans it)",
+                    path.arc_deg, path.distance_m);
 }
 
 void PrintPlan(const ShootPlan& plan, std::ostream& out) {

@@ -12,7 +12,8 @@ namespace velamap {
 // "1/250 s".
 std::string ExposureText(double exposure_s);
 
-// One sentence: where to film from, how far around, with what shutter.
+// One sentence: where to film from, how far around, with what shutter; of a better path where the
+// planned one is bad, and "none" where there is no such path.
 std::string RecommendationText(const ShootPlan& plan);
 
 // Verdict and recommendation, then `key: value` lines, then the tables.

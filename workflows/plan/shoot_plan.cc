@@ -28,6 +28,11 @@ double NumFound(const PlannedSurface& surface, const ViewSummary& summary) {
   return summary.found_share * static_cast<double>(surface.shape.markers.size());
 }
 
+// Markers in a view from which its pose can be found, if there are as many.
+double NumNeeded(const PlannedSurface& surface) {
+  return std::min(kMinMarkersOfView, static_cast<double>(surface.shape.markers.size()));
+}
+
 // To two digits.
 double Rounded(double value) {
   const double step = std::pow(10.0, std::floor(std::log10(value)) - 1);
@@ -63,9 +68,7 @@ double ChooseDistance(const PlannedSurface& surface, const Camera& camera, Plann
     distance_and_found.emplace_back(path.distance_m, found);
     most = std::max(most, found);
   }
-  const double num_needed =
-      std::min(kMinMarkersOfView, static_cast<double>(surface.shape.markers.size()));
-  if (most * static_cast<double>(surface.shape.markers.size()) < 0.5 * num_needed) {
+  if (most * static_cast<double>(surface.shape.markers.size()) < 0.5 * NumNeeded(surface)) {
     throw InputError(
         "--marker_length: at no distance does the picture hold enough markers that are large "
         "enough to be found; give larger or fewer markers, or a camera with more pixels");
@@ -110,11 +113,25 @@ double MotionPxPerS(const Camera& camera, double distance_m, double speed_m_s,
   return MeanFocalLength(camera) * (speed_m_s / distance_m + kRadPerDeg * turn_rate_deg_s);
 }
 
-double LongestExposure(const PlannedSurface& surface, const ViewSummary& summary,
-                       double motion_px_s) {
+double LongestExposure(const PlannedSurface& surface, double narrow_px, double motion_px_s) {
   constexpr double kLongest_s = 1.0;
-  const double path_px = ToleratedMotionPx(summary.median_narrow_px, surface.num_cells);
+  const double path_px = ToleratedMotionPx(narrow_px, surface.num_cells);
   return path_px < kLongest_s * motion_px_s ? path_px / motion_px_s : kLongest_s;
+}
+
+// The narrow side of the markers in the view of the path that shows them narrowest: an end of the
+// arc, which the shutter has to suit as well. Views without enough markers for a pose do not count,
+// as they add nothing to the shape.
+double NarrowestAlongPath(const ShootPlan& plan) {
+  std::optional<double> narrowest_px;
+  for (const double angle_deg : AnglesOf(plan.path)) {
+    const ViewSummary view = Summarize(
+        plan.surface,
+        {SeeMarkers(plan.surface, plan.camera, CameraAt(plan.surface, plan.path, angle_deg))});
+    if (NumFound(plan.surface, view) < 0.5 * NumNeeded(plan.surface)) continue;
+    narrowest_px = std::min(narrowest_px.value_or(view.median_narrow_px), view.median_narrow_px);
+  }
+  return narrowest_px.value_or(plan.along_path.median_narrow_px);
 }
 
 PlannedVariant MakeVariant(const std::string& changed, const PlannedPath& path,
@@ -129,67 +146,100 @@ PlannedVariant MakeVariant(const std::string& changed, const PlannedPath& path,
   return variant;
 }
 
-std::vector<PlannedVariant> MakeVariants(const PlannedPath& path, const PlannedSurface& surface,
-                                         const Camera& camera, const ShootPlanOptions& options) {
-  std::vector<PlannedVariant> variants;
-  const auto add = [&](const std::string& changed, const PlannedPath& changed_path) {
-    variants.push_back(MakeVariant(changed, changed_path, surface, camera, options));
+void AddVariants(const ShootPlanOptions& options, ShootPlan* plan) {
+  const auto add = [&](const std::string& changed, const PlannedPath& path) {
+    plan->variants.push_back(MakeVariant(changed, path, plan->surface, plan->camera, options));
   };
-  add("plan", path);
   for (const int num_views : {5, 10, 20, 40, 80}) {
-    PlannedPath changed = path;
+    PlannedPath changed = plan->path;
     changed.num_views = num_views;
     add("views", changed);
   }
   for (const double arc_deg : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0}) {
-    PlannedPath changed = path;
+    PlannedPath changed = plan->path;
     changed.arc_deg = arc_deg;
     add("arc", changed);
   }
   for (const double factor : {0.7, 1.5, 2.0}) {
-    PlannedPath changed = path;
-    changed.distance_m = Rounded(factor * path.distance_m);
+    PlannedPath changed = plan->path;
+    changed.distance_m = Rounded(factor * plan->path.distance_m);
     add("distance", changed);
   }
-  return variants;
+}
+
+void AddViews(const ShootPlanOptions& options, ShootPlan* plan) {
+  for (const double factor : {0.5, 0.7, 1.0, 1.5, 2.0, 3.0}) {
+    for (const double angle_deg : {0.0, 30.0, 60.0}) {
+      PlannedPath from = plan->path;
+      from.distance_m = factor == 1 ? plan->path.distance_m : Rounded(factor * from.distance_m);
+      PlannedView view{from.distance_m, angle_deg, {}, 0.0};
+      view.summary = Summarize(
+          plan->surface,
+          {SeeMarkers(plan->surface, plan->camera, CameraAt(plan->surface, from, angle_deg))});
+      view.exposure_s =
+          LongestExposure(plan->surface, view.summary.median_narrow_px,
+                          MotionPxPerS(plan->camera, from.distance_m, options.SpeedInMPerS(),
+                                       options.turn_rate_deg_s));
+      plan->views.push_back(view);
+    }
+  }
+}
+
+// The plan of one path, without what other places and paths give.
+ShootPlan PlanPath(const PlannedSurface& surface, const Camera& camera, const PlannedPath& path,
+                   const ShootPlanOptions& options) {
+  ShootPlan plan;
+  plan.camera = camera;
+  plan.surface = surface;
+  plan.path = path;
+  plan.along_path = SummarizePath(surface, camera, path);
+  const double narrow_px = NarrowestAlongPath(plan);
+  for (const double factor : {1.0, 0.5, 2.0}) {
+    PlannedShutter shutter{factor * options.SpeedInMPerS(), 0.0, 0.0};
+    shutter.motion_px_s =
+        MotionPxPerS(camera, path.distance_m, shutter.speed_m_s, options.turn_rate_deg_s);
+    shutter.exposure_s = LongestExposure(surface, narrow_px, shutter.motion_px_s);
+    plan.shutters.push_back(shutter);
+  }
+  plan.variants = {MakeVariant("plan", path, surface, camera, options)};
+  return plan;
+}
+
+// The planned path unless it is bad; else the usual arc from the distance that suits it, unless
+// that is bad too.
+std::optional<PlannedRecommendation> Recommend(const ShootPlan& plan,
+                                               const ShootPlanOptions& options) {
+  if (JudgePlan(plan).level != ReportStatus::kBad) {
+    return PlannedRecommendation{plan.path, plan.shutters.front()};
+  }
+  const ShootPlanOptions usual;
+  PlannedPath path = plan.path;
+  path.arc_deg = usual.arc_deg;
+  path.num_views = std::max(path.num_views, usual.num_views);
+  try {
+    path.distance_m = ChooseDistance(plan.surface, plan.camera, path);
+  } catch (const InputError&) {
+    return std::nullopt;  // no distance suits these markers
+  }
+  const ShootPlan other = PlanPath(plan.surface, plan.camera, path, options);
+  if (JudgePlan(other).level == ReportStatus::kBad) return std::nullopt;
+  return PlannedRecommendation{path, other.shutters.front()};
 }
 
 }  // namespace
 
 ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
                         const ShootPlanOptions& options) {
-  ShootPlan plan;
-  plan.camera = camera;
-  plan.surface = surface;
-  plan.path = {0.0, options.arc_deg,
-               options.height_m.value_or(std::min(kUsualHeight_m, LowestDepth(surface))),
-               options.num_views};
-  plan.path.distance_m =
-      options.distance_m ? *options.distance_m : ChooseDistance(surface, camera, plan.path);
-  plan.along_path = SummarizePath(surface, camera, plan.path);
-  CheckGivenDistance(surface, camera, plan.path, plan.along_path);
-  const double speed_m_s = options.SpeedInMPerS();
-  for (const double factor : {0.5, 0.7, 1.0, 1.5, 2.0, 3.0}) {
-    for (const double angle_deg : {0.0, 30.0, 60.0}) {
-      PlannedPath from = plan.path;
-      from.distance_m = factor == 1 ? plan.path.distance_m : Rounded(factor * from.distance_m);
-      PlannedView view{from.distance_m, angle_deg, {}, 0.0};
-      view.summary =
-          Summarize(surface, {SeeMarkers(surface, camera, CameraAt(surface, from, angle_deg))});
-      view.exposure_s = LongestExposure(
-          surface, view.summary,
-          MotionPxPerS(camera, from.distance_m, speed_m_s, options.turn_rate_deg_s));
-      plan.views.push_back(view);
-    }
-  }
-  for (const double factor : {1.0, 0.5, 2.0}) {
-    PlannedShutter shutter{factor * speed_m_s, 0.0, 0.0};
-    shutter.motion_px_s =
-        MotionPxPerS(camera, plan.path.distance_m, shutter.speed_m_s, options.turn_rate_deg_s);
-    shutter.exposure_s = LongestExposure(surface, plan.along_path, shutter.motion_px_s);
-    plan.shutters.push_back(shutter);
-  }
-  plan.variants = MakeVariants(plan.path, surface, camera, options);
+  PlannedPath path{0.0, options.arc_deg,
+                   options.height_m.value_or(std::min(kUsualHeight_m, LowestDepth(surface))),
+                   options.num_views};
+  path.distance_m =
+      options.distance_m ? *options.distance_m : ChooseDistance(surface, camera, path);
+  CheckGivenDistance(surface, camera, path, SummarizePath(surface, camera, path));
+  ShootPlan plan = PlanPath(surface, camera, path, options);
+  plan.recommended = Recommend(plan, options);
+  AddViews(options, &plan);
+  AddVariants(options, &plan);
   return plan;
 }
 

@@ -35,14 +35,24 @@ struct PlannedVariant {
   std::string failure;  // where the views give no shape
 };
 
+// What to do: the planned path, or a better one where that is bad.
+struct PlannedRecommendation {
+  PlannedPath path;
+  PlannedShutter shutter;  // at the planned speed
+};
+
 struct ShootPlan {
   Camera camera;
   PlannedSurface surface;
   PlannedPath path;
   ViewSummary along_path;
   std::vector<PlannedView> views;
-  std::vector<PlannedShutter> shutters;  // the planned speed, half of it and twice as much
+  // For the end of the arc where markers are narrowest: at the planned speed, half of it, and twice
+  // as much.
+  std::vector<PlannedShutter> shutters;
   std::vector<PlannedVariant> variants;  // the plan itself is the first
+
+  std::optional<PlannedRecommendation> recommended;  // nothing where no path was found to be better
 
   const PlannedVariant& plan() const { return variants.front(); }
 };

@@ -107,6 +107,42 @@ TEST(ShootPlanTest, ChoosesADistanceAndSaysWhatItGives) {
   EXPECT_THAT(csv.str(), HasSubstr("\nshutter,"));
 }
 
+// Markers are narrowest at the ends of a wide arc, and have to be sharp there too.
+TEST(ShootPlanTest, ShutterSuitsTheEndsOfTheArc) {
+  ShootPlanOptions options;
+  options.num_views = 12;
+  options.arc_deg = 150;
+  const ShootPlan plan = MakeShootPlan(PlannedSail(), LinearCamera(), options);
+  int num_compared = 0;
+  for (const PlannedView& view : plan.views) {
+    if (view.distance_m != plan.path.distance_m) continue;
+    EXPECT_LE(plan.shutters.front().exposure_s, view.exposure_s) << view.angle_deg;
+    ++num_compared;
+  }
+  EXPECT_EQ(num_compared, 3);
+}
+
+// A path that determines no depth is not recommended, but the one that does.
+TEST(ShootPlanTest, BadPathIsNotRecommended) {
+  ShootPlanOptions options;
+  options.num_views = 12;
+  options.arc_deg = 0;
+  const ShootPlan plan = MakeShootPlan(PlannedSail(), LinearCamera(), options);
+  ASSERT_EQ(JudgePlan(plan).level, ReportStatus::kBad);
+  ASSERT_TRUE(plan.recommended);
+  EXPECT_THAT(RecommendationText(plan),
+              AllOf(HasSubstr("go 90 degrees"), HasSubstr("--Plan.arc 90 --Plan.distance")));
+  options.arc_deg = plan.recommended->path.arc_deg;
+  options.num_views = plan.recommended->path.num_views;
+  options.distance_m = plan.recommended->path.distance_m;
+  EXPECT_NE(JudgePlan(MakeShootPlan(PlannedSail(), LinearCamera(), options)).level,
+            ReportStatus::kBad);
+}
+
+TEST(RecommendationTextTest, ThereIsNoneWhereNoPathIsBetter) {
+  EXPECT_EQ(RecommendationText(ShootPlan()).rfind("none", 0), 0u);
+}
+
 TEST(ShootPlanTest, DistanceWithoutMarkersIsRefusedWithABetterOne) {
   ShootPlanOptions options;
   options.distance_m = 60;
