@@ -64,6 +64,8 @@ struct Layout {
   std::vector<KnownDistance> distances;
   std::vector<KnownPoint> known_points;
   std::optional<FrameChoice> frame;  // of the result; if not set, the best available
+  // What marker_length_m was on the sheets before a printer changed it. Only prints use it.
+  std::optional<double> drawn_length_m{};
 
   // Whether the layout lists its markers. If not, every id is accepted.
   bool HasMarkers() const { return !parts.empty(); }

@@ -208,6 +208,7 @@ Layout ReadLayout(const std::string& path) {
       {{"dictionary", [&](const YamlItem& v) { layout.dictionary = ReadDictionaryName(v); }},
        {"marker_length", [&](const YamlItem& v) { layout.marker_length_m = ReadMarkerLength(v); }},
        {"marker_lengths", [&](const YamlItem& v) { lengths.emplace(v); }},
+       {"drawn_length", [&](const YamlItem& v) { layout.drawn_length_m = ReadMarkerLength(v); }},
        {"border_bits", [&](const YamlItem& v) { layout.border_bits = ReadBorderBits(v); }},
        {"parts", [&](const YamlItem& v) { layout.parts = ReadParts(v); }},
        {"reference_part", [&](const YamlItem& v) { reference.emplace(v); }},

@@ -109,6 +109,10 @@ void EmitLayout(const Layout& layout, YAML::Emitter* out) {
   *out << YAML::Key << "dictionary" << YAML::Value << layout.dictionary;
   *out << YAML::Key << "marker_length" << YAML::Value << Number(layout.marker_length_m)
        << YAML::Comment("m, outer edge of the black square");
+  if (layout.drawn_length_m) {
+    *out << YAML::Key << "drawn_length" << YAML::Value << Number(*layout.drawn_length_m)
+         << YAML::Comment("m, the same on the sheets; stays if marker_length is corrected");
+  }
   if (!layout.marker_lengths_m.empty()) {
     *out << YAML::Key << "marker_lengths" << YAML::Value << YAML::BeginMap;
     for (const auto& [id, length_m] : layout.marker_lengths_m) {

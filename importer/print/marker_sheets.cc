@@ -1,6 +1,7 @@
 #include "importer/print/marker_sheets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -48,6 +49,20 @@ void WarnOfNarrowMargin(const PrintSheetOptions& options, const PrintPlan& plan)
       OptionName(&PrintSheetOptions::margin_mm), *options.margin_mm, default_mm);
 }
 
+// A length such as 99.5 mm was measured rather than chosen. The printer that made 99.5 mm of 100 mm
+// would make 99 mm of 99.5 mm.
+void WarnOfMeasuredLength(const PrintOptions& options) {
+  constexpr double kLeast_mm = 10.0;  // shorter ones are often chosen to a tenth
+  if (!options.layout || options.layout->drawn_length_m) return;
+  const double length_mm = 1000 * options.layout->marker_length_m;
+  if (length_mm < kLeast_mm || std::abs(length_mm - std::round(length_mm)) < 1e-6) return;
+  LogWarning(
+      "--layout_path: the squares are drawn with the {:.5g} mm of key 'marker_length'. If you "
+      "measured that on sheets, add the length that those were drawn with, such as "
+      "'drawn_length: {:g}' (m), to {}, or the printer changes the size a second time",
+      length_mm, std::round(length_mm) / 1000, options.layout_path);
+}
+
 void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, OutputFiles* files) {
   for (const PrintedMarker& marker : plan.markers) {
     const double margin_mm = MakeSticker(marker, NumCells(plan.look), options).margin_mm;
@@ -67,7 +82,7 @@ std::string LayoutComment(const PrintOptions& options, const PrintPlan& plan) {
   std::string comment =
       "Written by velamap marker_generator, to start from: correct what is different on your "
       "object.\nIf the printed scale is not as long as it says, measure the black squares and set "
-      "marker_length.";
+      "marker_length.\nLeave drawn_length as it is: sheets that you print later follow from both.";
   if (plan.board) {
     comment +=
         fmt::format("\n{} columns, {} rows, {} {}.", plan.board->num_columns, plan.board->num_rows,
@@ -106,10 +121,15 @@ PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_
   CheckReplaceableFolder(output_path);
   const PrintPlan plan = MakePrintPlan(options);
   WarnOfNarrowMargin(options.sheet, plan);
+  WarnOfMeasuredLength(options);
   PrintReport report;
   report.dictionary = plan.look.dictionary.name;
   report.num_codes = NumMarkers(plan.look.dictionary);
   report.codes = plan.codes;
+  if (options.layout && options.layout->drawn_length_m != options.layout->marker_length_m &&
+      options.layout->drawn_length_m) {
+    report.drawn_length_mm = 1000 * *options.layout->drawn_length_m;
+  }
   OutputFiles files;
   std::vector<Drawing> pages, sheets;
   if (plan.board) {

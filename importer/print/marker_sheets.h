@@ -16,9 +16,12 @@ struct PrintReport {
   int num_codes = 0;
   std::optional<CodeSet> codes;  // if a custom dictionary was made
   int num_markers = 0;
-  int num_sheets = 0;              // pages in true scale
-  int num_drawings = 0;            // pages before these that show where the markers go
-  double margin_mm = 0.0;          // of the first sticker; 0 for a board
+  int num_sheets = 0;      // pages in true scale
+  int num_drawings = 0;    // pages before these that show where the markers go
+  double margin_mm = 0.0;  // of the first sticker; 0 for a board
+  // For a layout that says that the printer changed the size: what is drawn instead of
+  // marker_length.
+  std::optional<double> drawn_length_mm;
   std::vector<std::string> files;  // paths relative to the folder
 };
 

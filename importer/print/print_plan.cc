@@ -1,6 +1,7 @@
 #include "importer/print/print_plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -55,10 +56,27 @@ std::string PlaceText(const Layout& layout, int marker_id) {
   return PartOfMarker(layout, marker_id);
 }
 
-void AddMarkers(const std::vector<int>& ids, PrintPlan* plan) {
+// How much larger the squares have to be drawn than the layout says, so that a printer which made
+// the first ones smaller makes the new ones of the same size.
+double DrawnOverMeasured(const PrintOptions& options) {
+  constexpr double kMostOfAPrinter = 0.1;
+  if (!options.layout || !options.layout->drawn_length_m) return 1.0;
+  const double drawn_m = *options.layout->drawn_length_m;
+  const double measured_m = options.layout->marker_length_m;
+  if (std::abs(drawn_m / measured_m - 1) > kMostOfAPrinter) {
+    throw InputError(
+        fmt::format("--layout_path: key 'drawn_length' of {} is {} m, which no printer turns into "
+                    "the {} m of 'marker_length'; give the length on the printed sheets, or leave "
+                    "the key out to draw squares of 'marker_length'",
+                    options.layout_path, drawn_m, measured_m));
+  }
+  return drawn_m / measured_m;
+}
+
+void AddMarkers(const std::vector<int>& ids, double drawn_over_measured, PrintPlan* plan) {
   for (const int id : ids) {
-    plan->markers.push_back(
-        {id, 1000 * MarkerLength(plan->layout, id), PlaceText(plan->layout, id)});
+    plan->markers.push_back({id, 1000 * MarkerLength(plan->layout, id) * drawn_over_measured,
+                             PlaceText(plan->layout, id)});
   }
 }
 
@@ -91,7 +109,7 @@ void PlanPlaces(const PrintOptions& options, int num_cells, PrintPlan* plan) {
   const int hull_markers = options.sail.hull_markers;
   AddHull(is_hull && hull_markers == 0 ? kDefaultHullMarkers : hull_markers, options.first_id,
           plan);
-  AddMarkers(MarkerIds(plan->layout), plan);
+  AddMarkers(MarkerIds(plan->layout), 1.0, plan);
 }
 
 // The layout has no parts, so it accepts every id.
@@ -106,7 +124,7 @@ void PlanLooseMarkers(const PrintOptions& options, PrintPlan* plan) {
     ids.clear();
     for (int i = 0; i < options.num_markers; ++i) ids.push_back(options.first_id + i);
   }
-  AddMarkers(ids, plan);
+  AddMarkers(ids, 1.0, plan);
 }
 
 void PlanOneBoard(const PrintOptions& options, int num_cells, PrintPlan* plan) {
@@ -126,7 +144,7 @@ void PlanLayout(const PrintOptions& options, PrintPlan* plan) {
     throw InputError(
         "--layout_path: the layout names no markers; name those to print by --ids, such as 0,1,2");
   }
-  AddMarkers(ids, plan);
+  AddMarkers(ids, DrawnOverMeasured(options), plan);
 }
 
 std::vector<int> PlannedIds(const PrintPlan& plan) {
@@ -201,6 +219,7 @@ PrintPlan MakePrintPlan(const PrintOptions& options) {
   CheckIds(options, max_id, plan);
   KeepOnly(options.ids, &plan);
   plan.layout.border_bits = plan.look.border_bits;
+  if (!options.layout) plan.layout.drawn_length_m = plan.layout.marker_length_m;
   plan.layout.dictionary =
       IsOpenCvName(plan.look.dictionary.name) ? plan.look.dictionary.name : kDictionaryFile;
   return plan;

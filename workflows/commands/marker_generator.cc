@@ -57,6 +57,11 @@ void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& optio
   WriteFormatted(out, "sheets: {}\n", report.num_sheets);
   WriteFormatted(out, "pages_before_sheets: {}\n", report.num_drawings);
   if (report.margin_mm > 0) WriteFormatted(out, "white_margin_mm: {:.4g}\n", report.margin_mm);
+  if (report.drawn_length_mm) {
+    WriteFormatted(
+        out, "drawn_length_mm: {:.5g} (the printer that made {:.5g} mm of it does so again)\n",
+        *report.drawn_length_mm, 1000 * options.print.layout->marker_length_m);
+  }
   for (const std::string& file : report.files) {
     if (file.find('/') == std::string::npos) {
       WriteFormatted(out, "file: {}\n",

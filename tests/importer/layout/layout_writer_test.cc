@@ -13,6 +13,7 @@ namespace {
 Layout RichLayout() {
   Layout layout = MakeLayout("DICT_5X5_100", 0.1);
   layout.marker_lengths_m = {{7, 0.05}, {40, 0.12345678901234567}};
+  layout.drawn_length_m = 0.1005;
   layout.border_bits = 2;
   layout.parts.push_back(
       {"sail: main", false, {{"h1", {1, 2, 3}}, {"h#2", {7, 8, 9}}}, {{"v 1", {1, 7}}}, {30, 31}});
@@ -46,6 +47,7 @@ TEST(LayoutText, ReadsBackAsItWas) {
   EXPECT_EQ(read.dictionary, layout.dictionary);
   EXPECT_EQ(read.marker_length_m, layout.marker_length_m);
   EXPECT_EQ(read.marker_lengths_m, layout.marker_lengths_m);
+  EXPECT_EQ(read.drawn_length_m, layout.drawn_length_m);
   EXPECT_EQ(read.border_bits, layout.border_bits);
   EXPECT_EQ(read.reference_part, layout.reference_part);
   ASSERT_EQ(read.parts.size(), layout.parts.size());

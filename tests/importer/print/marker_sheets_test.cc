@@ -113,6 +113,35 @@ TEST_F(PrintMarkersTest, MarkersOfALayoutKeepTheirSizes) {
   EXPECT_EQ(plan.markers.back().place, "hull");
 }
 
+// A printer makes 49.75 mm of the 50 mm of the first sheets, and has to make the same of a reprint.
+TEST_F(PrintMarkersTest, ReprintOfACorrectedLayoutIsDrawnAsTheFirstSheets) {
+  MakeSail();
+  Print();
+  const std::string path = dir_ / "edited.yml";
+  std::string text = Read("layout.yml");
+  const std::string written = "marker_length: 0.05";
+  ASSERT_NE(text.find("\n" + written), std::string::npos);
+  text.replace(text.find("\n" + written) + 1, written.size(), "marker_length: 0.04975");
+  std::ofstream(path) << text << "marker_lengths: {3: 0.0199}\n";
+  options_ = PrintOptions();
+  options_.layout = ReadLayout(path);
+  options_.layout_path = path;
+  EXPECT_EQ(options_.layout->marker_length_m, 0.04975);
+  const PrintPlan plan = MakePrintPlan(options_);
+  EXPECT_NEAR(plan.markers[0].length_mm, 50, 1e-9);
+  EXPECT_NEAR(plan.markers[3].length_mm, 20, 1e-9);
+  EXPECT_EQ(Print().drawn_length_mm, 50);
+}
+
+TEST_F(PrintMarkersTest, DrawnLengthThatNoPrinterChangesSoMuchIsRefused) {
+  options_ = PrintOptions();
+  options_.layout = MakeLayout("DICT_4X4_50", 0.05);
+  options_.layout->drawn_length_m = 0.1;
+  options_.layout_path = "layout.yml";
+  options_.ids = {3};
+  ExpectError({"--layout_path", "drawn_length", "layout.yml", "leave the key out"});
+}
+
 TEST_F(PrintMarkersTest, BoardsAreOnePageWithARigidLayout) {
   options_.marker_length_m.reset();
   for (const Arrangement arrangement : {Arrangement::kBoard, Arrangement::kCharuco}) {

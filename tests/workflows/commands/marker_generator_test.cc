@@ -52,6 +52,21 @@ TEST_F(MarkerGeneratorTest, SaysWhatItMade) {
               ElementsAre(".velamap", "dictionary.yml", "layout.yml", "sheets.pdf"));
 }
 
+// A length that was measured must not be shrunk by the printer a second time.
+TEST_F(MarkerGeneratorTest, ReprintOfMeasuredMarkersSaysWhatIsDrawn) {
+  const std::string path = dir_ / "measured.yml";
+  WriteTextFile(path, "dictionary: DICT_4X4_50\nmarker_length: 0.0995\n");
+  const ProgramRun unsure = Run({"--layout_path", path, "--ids", "3"});
+  EXPECT_EQ(unsure.exit_code, 0) << unsure.err;
+  EXPECT_THAT(unsure.err, HasSubstr("with the 99.5 mm of key 'marker_length'"));
+  EXPECT_THAT(unsure.err, HasSubstr("'drawn_length: 0.1' (m), to " + path));
+  WriteTextFile(path, "dictionary: DICT_4X4_50\nmarker_length: 0.0995\ndrawn_length: 0.1\n");
+  const ProgramRun sure = Run({"--layout_path", path, "--ids", "3"});
+  EXPECT_EQ(sure.exit_code, 0) << sure.err;
+  EXPECT_EQ(sure.err.find("drawn_length"), std::string::npos) << sure.err;
+  EXPECT_THAT(sure.out, HasSubstr("drawn_length_mm: 100 (the printer that made 99.5 mm of it"));
+}
+
 TEST_F(MarkerGeneratorTest, BadWishes) {
   ExpectFailure(Three({"--Sheet.paper", "70x70"}),
                 "--Sheet.paper: 70x70 is too small for marker 0");
