@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "exporters/calibration/calibration_drawing.h"
@@ -12,6 +13,7 @@
 #include "exporters/report/report_assets.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/text/markup.h"
+#include "importer/text/output_date.h"
 
 namespace velamap {
 namespace {
@@ -92,11 +94,15 @@ std::string ViewTable(const CameraCalibration& calibration) {
 }
 
 std::string PlaceholderHtml(std::string_view name, const CameraCalibration& calibration,
-                            const std::string& board, const ResidualDrawing& residuals) {
+                            const CalibrationSource& source, const ResidualDrawing& residuals) {
   const Camera& camera = calibration.camera.camera;
   if (name == "STYLE") return std::string(kReportStyle);
+  if (name == "TITLE") {
+    return EscapeForMarkup(fmt::format("{} from {}", source.camera_file, source.pictures));
+  }
   if (name == "ORIGIN") {
-    return EscapeForMarkup(fmt::format("{} x {} px, {}", camera.width_px, camera.height_px, board));
+    return EscapeForMarkup(fmt::format("{:%Y-%m-%d %H:%M} UTC, {} x {} px, {}", OutputDate(),
+                                       camera.width_px, camera.height_px, source.board));
   }
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
   if (name == "PARAMETERS") return ParameterTable(calibration.camera);
@@ -128,12 +134,12 @@ std::string PlaceholderHtml(std::string_view name, const CameraCalibration& cali
 
 }  // namespace
 
-void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& board,
+void WriteCalibrationPage(const CameraCalibration& calibration, const CalibrationSource& source,
                           std::ostream& out) {
   const ResidualDrawing residuals = DrawResiduals(calibration);
   WriteHtmlPage(
       kCalibrationPage,
-      [&](std::string_view name) { return PlaceholderHtml(name, calibration, board, residuals); },
+      [&](std::string_view name) { return PlaceholderHtml(name, calibration, source, residuals); },
       out);
 }
 

@@ -9,8 +9,15 @@
 
 namespace velamap {
 
-// `board` says what was filmed, such as "markers of DICT_4X4_50".
-void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& board,
+// What tells the pages of several cameras apart.
+struct CalibrationSource {
+  std::string pictures;     // name of the clip or the folder
+  std::string camera_file;  // name of the file that the calibration is in
+  std::string board;        // what was filmed, such as "markers of DICT_4X4_50"
+};
+
+// The page says when it was made: OutputDate(), whose errors it throws.
+void WriteCalibrationPage(const CameraCalibration& calibration, const CalibrationSource& source,
                           std::ostream& out);
 
 }  // namespace velamap

@@ -84,7 +84,8 @@ Option PathOption(const std::string& name, PathUse use, std::string* path,
 // An option that most people need: --help shows it, and the required ones; --help_all shows all.
 Option Common(Option option);
 
-// The file `name` beside `folder` is meant where the option is left out.
+// The file `name` beside `folder` is meant where the option is left out. A * at the beginning of
+// the name stands for the name of `folder` without its ending.
 Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name);
 
 struct OptionGroup {

@@ -58,7 +58,7 @@ bool BeginsAsOneOfOurs(const std::string& text) {
   return begins("image_name,registered,num_markers,") ||   // registration.csv
          begins("[\n {\n  \"stage\": \"") ||               // timing.json
          begins("%YAML:1.0\n---\n# found by velamap ") ||  // camera.yml
-         (begins("<!DOCTYPE html>") &&                     // report, calibration.html
+         (begins("<!DOCTYPE html>") &&                     // report, page of a camera
           title_line.find("velamap") != std::string::npos) ||
          (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
 }

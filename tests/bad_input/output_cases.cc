@@ -169,7 +169,7 @@ std::vector<BadInput> FoldersOfOthers() {
       {"APageOfTheUserBesideTheCamera",
        "camera_calibrator --image_path @/images --layout_path @/layout.yml --output_path "
        "@/home/camera.yml",
-       2, "calibration.html would be replaced", Put("home/calibration.html")},
+       2, "camera.html would be replaced", Put("home/camera.html")},
       {"FramesOverPicturesOfTheUser", kImportClip, 2, "frame_000002.jpg",
        Put("frames/frame_000002.jpg")},
       {"AWorkspaceThatIsNone", kRerun + "2", 2, "holds thesis.tex", Put("workspace2/thesis.tex")}};

@@ -8,6 +8,7 @@
 #include "exporters/calibration/calibration_verdict.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/text/write_formatted.h"
 #include "workflows/calibrate/board_calibration.h"
 #include "workflows/commands/commands.h"
@@ -37,9 +38,9 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
          Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                              "camera file for the other commands, with sigmas")),
          BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
-                                    "page to look at (HTML); left out: calibration.html beside "
-                                    "the camera file"),
-                         &paths->output_path, "calibration.html")}},
+                                    "page to look at (HTML); left out: beside the camera file, "
+                                    "under its name, such as camera.html"),
+                         &paths->output_path, "*.html")}},
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
           "largest number of pictures used; the most informative ones are chosen", FromTo(5, 500)},
@@ -125,6 +126,9 @@ void Print(const CameraCalibration& calibration, std::ostream& out) {
   WriteFormatted(out, "board: {}\n", DescribeBoard(calibration.board));
 }
 
+// Without its folder: pages are passed on to others.
+std::string FileName(const std::string& path) { return AbsoluteFolder(path).filename().string(); }
+
 void Run(const CameraCalibratorCommandOptions& options) {
   const BoardCalibration result = CalibrateWithBoard(options.calibration);
   const CameraCalibration& calibration = result.calibration;
@@ -134,8 +138,12 @@ void Run(const CameraCalibratorCommandOptions& options) {
                                CameraModelName(calibration.camera.camera.model),
                                calibration.UsedViews().size(), calibration.Score().unseen_error_px),
                    options.paths.output_path);
-  WriteSealedPage(options.report_path,
-                  [&](std::ostream& out) { WriteCalibrationPage(calibration, result.board, out); });
+  WriteSealedPage(options.report_path, [&](std::ostream& out) {
+    WriteCalibrationPage(
+        calibration,
+        {FileName(options.paths.image_path), FileName(options.paths.output_path), result.board},
+        out);
+  });
   Print(calibration, std::cout);
   WriteFormatted(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
                  options.report_path);

@@ -49,6 +49,14 @@ void AddPictures(const std::string& used_by, const fs::path& path, UsedPaths* pa
   }
 }
 
+// The file that is meant where an option is left out. Next to phone.yml, *.html is phone.html.
+fs::path DefaultPath(const Option& option) {
+  const fs::path beside = AbsoluteFolder(*option.beside);
+  const std::string& name = option.name_beside;
+  const bool takes_its_name = name.front() == '*';
+  return beside.parent_path() / (takes_its_name ? beside.stem().string() + name.substr(1) : name);
+}
+
 // Comparisons also read the uncertainty of the model beside a folder of a shape.
 void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
   if (!IsFolder(path)) return paths->inputs.push_back({used_by, path});
@@ -137,7 +145,7 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
       const bool is_default_name =
           path->empty() && fs::path(option.name_beside).extension() != ".log";
       if (path->empty() && option.beside != nullptr && !option.beside->empty()) {
-        *path = (AbsoluteFolder(*option.beside).parent_path() / option.name_beside).string();
+        *path = DefaultPath(option).string();
       }
       if (path->empty() || option.path_use == PathUse::kNone) continue;
       RegisterPrivatePath(*path);

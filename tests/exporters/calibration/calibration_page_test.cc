@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "exporters/calibration/calibration_verdict.h"
+#include "tests/support/scoped_date.h"
 
 namespace velamap {
 namespace {
@@ -46,8 +47,18 @@ CameraCalibration GoodCalibration() {
 
 std::string Page(const CameraCalibration& calibration) {
   std::ostringstream out;
-  WriteCalibrationPage(calibration, "DICT_4X4_50", out);
+  WriteCalibrationPage(calibration, {"board<1>.mp4", "phone.yml", "DICT_4X4_50"}, out);
   return out.str();
+}
+
+// So that the pages of two cameras are not mistaken for each other.
+TEST(CalibrationPage, NamesCameraFilePicturesAndDate) {
+  const ScopedDate date("1700000000");
+  EXPECT_THAT(
+      Page(GoodCalibration()),
+      AllOf(HasSubstr("<title>phone.yml from board&lt;1&gt;.mp4 – velamap camera calibration"),
+            HasSubstr("<h1>Camera calibration: phone.yml from board&lt;1&gt;.mp4</h1>"),
+            HasSubstr("2023-11-14 22:13 UTC")));
 }
 
 TEST(CalibrationPage, SaysTheVerdictFirstAndEverythingOnce) {

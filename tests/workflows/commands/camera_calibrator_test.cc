@@ -51,7 +51,9 @@ TEST(CameraCalibrator, TwoHalvesOfARealRecordingAgreeWithinTheirSigmas) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: "), HasSubstr("unseen_error_px: "),
                                HasSubstr("camera_path: ")));
-    EXPECT_THAT(ReadFileBytes(dir.path() / "calibration.html"), HasSubstr("</html>"));
+    EXPECT_THAT(
+        ReadFileBytes(dir.path() / (half + ".html")),
+        AllOf(HasSubstr("<title>" + half + ".yml from " + half + " "), HasSubstr("</html>")));
     halves.push_back(Read(camera));
   }
   const double sigma_px = std::hypot(halves[0].sigma_px, halves[1].sigma_px);
