@@ -194,13 +194,7 @@ Layout ReadLayout(const std::string& path) {
   const std::string text = ReadTextFile(path, "layout file (--layout_path)");
   CheckUtf8(text, path);
   CheckSingleDocument(path, text);
-  YAML::Node root;
-  try {
-    root = YAML::Load(text);
-  } catch (const YAML::Exception& exception) {
-    FailYaml(path, exception.mark, "no valid YAML: " + exception.msg);
-  }
-  const YamlItem top{path, root, ""};
+  const YamlItem top{path, LoadYaml(path, text), ""};
   Layout layout;
   std::optional<YamlItem> lengths, reference, distances, known_points, frame;
   ReadMap(

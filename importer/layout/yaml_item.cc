@@ -2,12 +2,48 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 
 namespace velamap {
+namespace {
+
+// The first line up to `last_line` that begins with a tab, counted from 0; -1 if none does.
+int LineIndentedByTab(const std::string& text, int last_line) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i <= last_line && std::getline(lines, line); ++i) {
+    const std::size_t content = line.find_first_not_of(" \t");
+    const std::size_t tab = line.find('\t');
+    if (content != std::string::npos && line[content] != '#' && tab < content) return i;
+  }
+  return -1;
+}
+
+}  // namespace
+
+YAML::Node LoadYaml(const std::string& path, const std::string& text) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& exception) {
+    // Where a tab is to blame, the parser may give up one line later.
+    const int tab_line = LineIndentedByTab(text, exception.mark.line + 1);
+    if (tab_line >= 0) {
+      throw InputError(fmt::format(
+          "{}:{}: no valid YAML: the line is indented by a tab; use spaces", path, tab_line + 1));
+    }
+    const bool is_bracket = exception.msg.find("flow") != std::string::npos;
+    FailYaml(path, exception.mark,
+             fmt::format("no valid YAML ({}): {}", exception.msg,
+                         is_bracket ? "here or above, a list that begins with [ has to end with ], "
+                                      "and a map that begins with { with }"
+                                    : "write 'key: value' with a space after the colon, and indent "
+                                      "the keys of one level by the same number of spaces"));
+  }
+}
 
 void FailYaml(const std::string& path, const YAML::Mark& mark, const std::string& message) {
   if (mark.is_null()) throw InputError(fmt::format("{}: {}", path, message));

@@ -163,6 +163,33 @@ void MakeCustomDictionary(const PrintOptions& options, int max_id, PrintPlan* pl
   plan->look.dictionary = MakeDictionary(name, *plan->codes);
 }
 
+// Which option asks for so many markers, and for which ids: the beginning of an error.
+std::string TooManyText(const PrintOptions& options, const std::string& option, int max_id) {
+  if (options.arrangement != Arrangement::kGrid || options.layout) {
+    return fmt::format("{}: marker {} is wanted", option, max_id);
+  }
+  return fmt::format("{}: {} rows x {} columns from id {} on{} end at marker {}",
+                     OptionName(&GridPlacementOptions::num_rows), options.grid.num_rows,
+                     options.grid.num_columns, options.first_id,
+                     options.sail.hull_markers > 0 ? " and the markers of the hull" : "", max_id);
+}
+
+// Throws InputError for ids that no dictionary has a code for.
+void CheckLargestId(const PrintOptions& options, int max_id, const PrintPlan& plan) {
+  if (max_id <= kMaxMarkerId) return;
+  std::string codes;
+  if (!plan.look.dictionary.name.empty()) {
+    codes = fmt::format(", and {} has {} codes", plan.look.dictionary.name,
+                        NumMarkers(plan.look.dictionary));
+  }
+  throw InputError(fmt::format("{}; ids end at {}{}; give fewer markers{}",
+                               TooManyText(options, "--first_id", max_id), kMaxMarkerId, codes,
+                               options.codes.bits_per_side > 0
+                                   ? ""
+                                   : " and a dictionary with as many codes, such as "
+                                     "DICT_4X4_1000 for 1000"));
+}
+
 // Throws InputError for ids that the dictionary has no code for.
 void CheckIds(const PrintOptions& options, int max_id, const PrintPlan& plan) {
   const int num_codes = NumMarkers(plan.look.dictionary);
@@ -174,9 +201,9 @@ void CheckIds(const PrintOptions& options, int max_id, const PrintPlan& plan) {
   } else if (options.layout) {
     option = fmt::format("--layout_path: key 'dictionary' of {}", options.layout_path);
   }
-  throw InputError(
-      fmt::format("{}: marker {} is wanted, but {} has {} codes, 0 to {}; give {} or fewer markers",
-                  option, max_id, plan.look.dictionary.name, num_codes, num_codes - 1, remedy));
+  throw InputError(fmt::format("{}, but {} has {} codes, 0 to {}; give {} or fewer markers",
+                               TooManyText(options, option, max_id), plan.look.dictionary.name,
+                               num_codes, num_codes - 1, remedy));
 }
 
 void KeepOnly(const std::vector<int>& ids, PrintPlan* plan) {
@@ -211,10 +238,7 @@ PrintPlan MakePrintPlan(const PrintOptions& options) {
   }
   const std::vector<int> ids = PlannedIds(plan);
   const int max_id = *std::max_element(ids.begin(), ids.end());
-  if (max_id > kMaxMarkerId) {
-    throw InputError(
-        fmt::format("--first_id: marker {} is wanted; ids end at {}", max_id, kMaxMarkerId));
-  }
+  CheckLargestId(options, max_id, plan);
   if (options.codes.bits_per_side > 0) MakeCustomDictionary(options, max_id, &plan);
   CheckIds(options, max_id, plan);
   KeepOnly(options.ids, &plan);

@@ -55,10 +55,8 @@ std::vector<std::string> ListImages(const fs::path& folder) {
   std::sort(names.begin(), names.end(), NaturalLess);
   std::sort(others.begin(), others.end(), NaturalLess);
   if (names.empty()) {
-    throw InputError(
-        fmt::format("{}: the folder holds no images (.jpg, .png, .tif ...); give a "
-                    "folder of images or a video file",
-                    folder.string()));
+    throw InputError(fmt::format("{}: the folder holds no images (.jpg, .png, .tif ...){}",
+                                 folder.string(), RemedyForNoImages(folder, others)));
   }
   for (const std::string& name : names) CheckImageName(name, folder.string());
   if (!others.empty()) {

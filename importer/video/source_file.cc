@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <vector>
 
 #include <fmt/chrono.h>
@@ -54,16 +55,48 @@ SourceFile SourceWithoutHash(const std::string& path) {
   return source;
 }
 
+// In lower case.
+std::string FileEnding(const std::string& name) {
+  std::string ending = std::filesystem::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+// The first of the names with one of the endings; empty for none.
+std::string FirstWithEnding(const std::vector<std::string>& names,
+                            const std::set<std::string>& endings) {
+  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return endings.count(FileEnding(name)) > 0;
+  });
+  return found == names.end() ? "" : *found;
+}
+
 }  // namespace
 
 bool HasImageExtension(const std::string& path) {
   static constexpr std::array<const char*, 16> kExtensions = {
       ".jpg",  ".jpeg", ".jpe", ".png", ".tif", ".tiff", ".bmp", ".dib",
       ".webp", ".jp2",  ".pgm", ".ppm", ".pbm", ".pnm",  ".ras", ".exr"};
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+  return std::find(kExtensions.begin(), kExtensions.end(), FileEnding(path)) != kExtensions.end();
+}
+
+std::string RemedyForNoImages(const std::filesystem::path& folder,
+                              const std::vector<std::string>& names) {
+  const std::string heic = FirstWithEnding(names, {".heic", ".heif", ".avif"});
+  const std::string video =
+      FirstWithEnding(names, {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".webm"});
+  std::string remedy;
+  if (!heic.empty()) {
+    remedy += fmt::format(
+        "; HEIC pictures such as {} cannot be read: convert them to JPEG, or set "
+        "the phone's camera to 'most compatible'",
+        heic);
+  }
+  if (!video.empty()) {
+    remedy += fmt::format("; for a video, give the file itself: {}", (folder / video).string());
+  }
+  return remedy.empty() ? "; give a folder of images or a video file" : remedy;
 }
 
 SourceFile IdentifySource(const std::string& path) {

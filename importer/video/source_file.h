@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace velamap {
 
@@ -23,6 +24,11 @@ struct SourceFile {
 
 // Whether the name has an extension of an image that velamap reads (.jpg, .png, .tif ...).
 bool HasImageExtension(const std::string& path);
+
+// What to give in place of a folder without pictures that velamap reads, from the names of the
+// files in it: the end of an error, with a semicolon before each remedy.
+std::string RemedyForNoImages(const std::filesystem::path& folder,
+                              const std::vector<std::string>& names);
 
 // Throws InputError if the file cannot be read.
 SourceFile IdentifySource(const std::string& path);

@@ -1,6 +1,7 @@
 #include "importer/video/video_stream.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
@@ -81,9 +82,14 @@ FormatPtr OpenFormat(const std::string& path) {
   av_log_set_callback(NoteLoggedDamage);
   AVFormatContext* opened = nullptr;
   // Without the protocol, FFmpeg would look for one before a colon in the name.
-  if (avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr) < 0) {
-    ThrowUnreadable(path);
+  const int error = avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr);
+  if (error == AVERROR(EACCES)) {
+    throw InputError(
+        path +
+        ": no permission to read this file; change its permissions, or copy it to a folder "
+        "of your own");
   }
+  if (error < 0) ThrowUnreadable(path);
   FormatPtr format(opened);
   CheckHoldsVideo(path, opened->iformat->name);
   if (avformat_find_stream_info(opened, nullptr) < 0) ThrowUnreadable(path);

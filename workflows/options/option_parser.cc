@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <boost/program_options.hpp>
@@ -201,9 +202,20 @@ struct Setter {
   template <typename Number>
   void SetNumber(const char* kind, Number* value) const {
     if (!ParseNumber(given.text, value) || !std::isfinite(static_cast<double>(*value))) {
-      throw InputError(
-          fmt::format("{}: '{}' is not a {}, or is too large", given.given_as, given.text, kind));
+      throw InputError(fmt::format("{}: '{}' is not a {}, or is too large{}", given.given_as,
+                                   given.text, kind,
+                                   std::is_floating_point_v<Number> ? DecimalPointHint() : ""));
     }
+  }
+
+  // For 0,1 as many languages write it.
+  std::string DecimalPointHint() const {
+    std::string text = given.text;
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) return "";
+    text[comma] = '.';
+    double number = 0.0;
+    return ParseNumber(text, &number) ? "; write a decimal point: " + text : "";
   }
 
   void operator()(std::string* value) const { *value = given.text; }

@@ -93,6 +93,11 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   };
   const std::string head = "dictionary: DICT_4X4_50\nmarker_length: 0.1\n";
   expect("a: [1\nb: 2\n", 2, "no valid YAML");
+  expect("a: [1\nb: 2\n", 2, "a list that begins with [ has to end with ]");
+  expect(head + "parts:\n  sail: {markers: [1]\n", 5, "a map that begins with { with }");
+  expect(head + "parts:\n\tsail:\n\t\tmarkers: [1]\n", 4, "indented by a tab; use spaces");
+  expect(head + "parts:\n  sail:\n\tmarkers: [1]\n", 5, "indented by a tab; use spaces");
+  expect("dictionary: D\nmarker_length 0.1\nborder_bits: 1\n", 3, "a space after the colon");
   expect("- 1\n", 1, "a map");
   expect("marker_length: 0.1\n", 1, "key 'dictionary' is missing");
   expect("dictionary: DICT_4X4_50\n", 1, "key 'marker_length' is missing");

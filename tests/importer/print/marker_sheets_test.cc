@@ -200,6 +200,14 @@ TEST_F(PrintMarkersTest, BadInputNamesTheOptionAndWritesNothing) {
   options_.marker_length_m = 0.05;
   options_.first_id = 8190;
   ExpectError({"--first_id", "8191"});
+  options_.first_id = options_.num_markers = 0;
+  options_.arrangement = Arrangement::kGrid;
+  options_.grid.num_rows = options_.grid.num_columns = 100;
+  ExpectError({"--Grid.rows: 100 rows x 100 columns", "9999", "DICT_4X4_250 has 250 codes",
+               "DICT_4X4_1000"});
+  options_.grid.num_rows = options_.grid.num_columns = 20;
+  ExpectError({"--Grid.rows: 20 rows x 20 columns", "marker 399", "DICT_4X4_250 has 250 codes",
+               "a larger dictionary"});
 }
 
 TEST_F(PrintMarkersTest, TheDictionaryOfALayoutIsBlamedOnTheLayout) {

@@ -1,5 +1,7 @@
 #include "importer/video/frame_source.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -104,6 +106,34 @@ TEST(OpenFrameSource, NamesWhatIsWrong) {
                                << "what follows the picture";
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "a.mp4", {}); },
                            {dir / "a.mp4", "a picture"});
+}
+
+TEST(OpenFrameSource, SaysWhatToDoWithAFolderOfAPhone) {
+  const TempDir dir;
+  std::ofstream(dir / "IMG_1.HEIC") << "a picture";
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); },
+                           {"no images", "IMG_1.HEIC", "JPEG", "most compatible"});
+  std::ofstream(dir / "clip.MOV") << "a video";
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); },
+                           {"IMG_1.HEIC", "give the file itself: " + (dir / "clip.MOV").string()});
+}
+
+// Root may read everything, so the test takes the rights of another user for a while.
+TEST(OpenFrameSource, NamesAMissingPermission) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 3);
+  std::filesystem::permissions(dir.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(dir / "v.avi", std::filesystem::perms::none);
+  constexpr uid_t kNobody = 65534;
+  const uid_t user = geteuid();
+  if (user == 0) {
+    ASSERT_EQ(seteuid(kNobody), 0);
+  }
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "v.avi", {}); },
+                           {dir / "v.avi", "no permission to read this file"});
+  if (user == 0) {
+    ASSERT_EQ(seteuid(user), 0);
+  }
 }
 
 TEST(VideoFile, FramesAreNumberedTimedAndComplete) {

@@ -94,6 +94,10 @@ TEST(OptionParserTest, RefusesValuesBeyondTheRange) {
   EXPECT_EQ(error_of("--Walk.length", "0"),
             "--Walk.length: 0 is out of range; give more than 0 (m)");
   EXPECT_EQ(error_of("--Walk.maybe", "1.5"), "--Walk.maybe: 1.5 is out of range; give -1 to 1 (m)");
+  EXPECT_EQ(error_of("--Walk.length", "0,5"),
+            "--Walk.length: '0,5' is not a number, or is too large; write a decimal point: 0.5");
+  EXPECT_EQ(error_of("--Walk.count", "1,5"),
+            "--Walk.count: '1,5' is not a whole number, or is too large");
   EXPECT_EQ(error_of("--Walk.gait", "run"), "--Walk.gait: 'run' is unknown; give walk or trot");
 }
 
