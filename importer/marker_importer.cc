@@ -12,6 +12,7 @@
 #include "importer/base/files.h"
 #include "importer/base/log.h"
 #include "importer/base/parallel.h"
+#include "importer/base/stage_timer.h"
 #include "importer/continued_tracking.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
@@ -36,13 +37,16 @@ std::string ProgressLine(const FrameResult& result) {
 }
 
 // The estimate in the database, so that later frames are treated like the first ones; otherwise a
-// new one, which is added to the database.
+// new one, which is added to the database and whose time is added to `time`.
 FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
-                              ColmapDatabase* database) {
+                              ColmapDatabase* database, BusyTime* time) {
   if (const auto known = database->ReadFormation()) return *known;
+  const ProcessTimer timer;
   const FormationEstimate estimate =
       EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector);
   database->WriteFormation(estimate);
+  TakeStageTimes();  // drops what the search for samples charged to other stages
+  *time = timer.Elapsed();
   return estimate;
 }
 
@@ -125,8 +129,10 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   CheckFrameFolder(options, known_names);
   const bool estimates_formation = detector.options.corner_refinement == CornerRefinement::kEdge &&
                                    detector.options.estimate_formation;
+  BusyTime formation_time;
   if (estimates_formation) {
-    detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
+    detector.formation =
+        ImageFormation(FormationOf(options, detector, &database, &formation_time).parameters);
   }
   RecordPart(options, DescribeDetector(detector), false, &database);
   ImportReport report;
@@ -140,6 +146,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   report.num_images_present = static_cast<int>(known_names.size());
   CompleteDatabase(options, detector, &database, &report);
   report.times += TakeStageTimes();
+  report.times[ImportStage::kFormation] = formation_time;
   guard.Keep();
   return report;
 }

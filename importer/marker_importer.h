@@ -75,9 +75,9 @@ struct ImportReport {
   // including those of an earlier import of the same frames.
   int num_frames_damaged = 0;
   // CPU times are sums over the threads. Decoding gets the CPU time that no other stage accounts
-  // for, because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those
-  // of the reading thread (decode), the mean over the working threads (detect, refine, images) and
-  // those of the calling thread (database).
+  // for, because FFmpeg decodes on threads of its own. The stages after `formation` overlap, so
+  // wall times are those of the reading thread (decode), the mean over the working threads (detect,
+  // refine, images) and those of the calling thread (database).
   ImportTimes times;
 };
 

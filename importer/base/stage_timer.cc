@@ -43,8 +43,8 @@ int SwitchTo(int stage) {
 }  // namespace
 
 const char* ImportStageName(ImportStage stage) {
-  constexpr std::array<const char*, kNumImportStages> kNames = {"decode", "detect", "refine",
-                                                                "images", "database"};
+  constexpr std::array<const char*, kNumImportStages> kNames = {"formation", "decode", "detect",
+                                                                "refine",    "images", "database"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -72,5 +72,11 @@ ImportTimes TakeStageTimes() {
 }
 
 double ProcessCpuSeconds() { return Seconds(CLOCK_PROCESS_CPUTIME_ID); }
+
+ProcessTimer::ProcessTimer() : begin_{Seconds(CLOCK_MONOTONIC), ProcessCpuSeconds()} {}
+
+BusyTime ProcessTimer::Elapsed() const {
+  return {Seconds(CLOCK_MONOTONIC) - begin_.wall_s, ProcessCpuSeconds() - begin_.cpu_s};
+}
 
 }  // namespace velamap

@@ -9,15 +9,16 @@
 namespace velamap {
 
 enum class ImportStage {
-  kDecode,    // from the file to a grey image
-  kDetect,    // from the grey image to markers with colours, duplicates and rotations resolved
-  kRefine,    // corners to a fraction of a pixel
-  kImages,    // writing frames of a video as JPEG
-  kDatabase,  // writing rows and matches, and the steps that need all frames
+  kFormation,  // estimating what camera and print do to edges, before all others
+  kDecode,     // from the file to a grey image
+  kDetect,     // from the grey image to markers with colours, duplicates and rotations resolved
+  kRefine,     // corners to a fraction of a pixel
+  kImages,     // writing frames of a video as JPEG
+  kDatabase,   // writing rows and matches, and the steps that need all frames
 };
-inline constexpr std::size_t kNumImportStages = 5;
+inline constexpr std::size_t kNumImportStages = 6;
 
-// "decode", "detect", "refine", "images", "database".
+// "formation", "decode", "detect", "refine", "images", "database".
 const char* ImportStageName(ImportStage stage);
 
 struct BusyTime {
@@ -50,6 +51,17 @@ class StageTimer {
 
  private:
   int outer_;
+};
+
+// Takes the time of all threads of the program since its construction, for a stage that is the only
+// one to run.
+class ProcessTimer {
+ public:
+  ProcessTimer();
+  BusyTime Elapsed() const;
+
+ private:
+  BusyTime begin_;
 };
 
 // Returns the times that the timers of this thread have charged since the last call.

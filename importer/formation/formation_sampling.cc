@@ -172,6 +172,8 @@ std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, in
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector) {
+  // May take longer than the detection in a few photographs.
+  LogInfo("looking for markers that show what camera and print do to edges");
   const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video, {}, num_threads);
   std::vector<FormationSample> samples =
       source->IsVideo() ? SampleVideo(detector, num_threads, source.get())

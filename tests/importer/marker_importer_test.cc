@@ -92,12 +92,15 @@ TEST_F(MarkerImporterTest, VideoKeepsFramesWithMarkers) {
   EXPECT_NEAR(images[2].detections.time_s.value(), 0.4, 1e-9);
   EXPECT_EQ(std::distance(fs::directory_iterator(dir_ / "frames"), {}), 6);
   EXPECT_EQ(cv::imread(dir_ / "frames/frame_000004.jpg").size(), kSize);
-  for (const ImportStage stage : {ImportStage::kDecode, ImportStage::kDetect, ImportStage::kRefine,
-                                  ImportStage::kImages, ImportStage::kDatabase}) {
+  for (const ImportStage stage :
+       {ImportStage::kFormation, ImportStage::kDecode, ImportStage::kDetect, ImportStage::kRefine,
+        ImportStage::kImages, ImportStage::kDatabase}) {
     EXPECT_GT(report.times[stage].wall_s, 0.0) << ImportStageName(stage);
     EXPECT_GT(report.times[stage].cpu_s, 0.0) << ImportStageName(stage);
   }
-  EXPECT_EQ(ImportMarkers(options_).num_images_added, 0);
+  const ImportReport again = ImportMarkers(options_);
+  EXPECT_EQ(again.num_images_added, 0);
+  EXPECT_EQ(again.times[ImportStage::kFormation].cpu_s, 0.0) << "the estimate is in the database";
 }
 
 TEST_F(MarkerImporterTest, IdsThatTheLayoutDoesNotNameAreReported) {

@@ -58,8 +58,10 @@ void StageClock::EndImport(const ImportTimes& parts, int num_frames) {
     const auto stage = static_cast<ImportStage>(i);
     const BusyTime& time = parts[stage];
     if (time.wall_s == 0) continue;
-    stages_.push_back(
-        {ImportStageName(stage), "import", time.wall_s, time.cpu_s, num_frames, peak_memory_mb});
+    // The formation is estimated from a few frames, however many there are.
+    const int num_frames_of_part = stage == ImportStage::kFormation ? 0 : num_frames;
+    stages_.push_back({ImportStageName(stage), "import", time.wall_s, time.cpu_s,
+                       num_frames_of_part, peak_memory_mb});
   }
 }
 
@@ -72,12 +74,12 @@ std::vector<StageTime> StageClock::Times() const {
 
 std::vector<std::string> StageTable(const std::vector<StageTime>& times) {
   std::vector<std::string> lines = {
-      fmt::format("{:<10} {:>8} {:>8} {:>8} {:>8}", "stage", "wall s", "CPU s", "frames/s", "MB")};
+      fmt::format("{:<11} {:>8} {:>8} {:>8} {:>8}", "stage", "wall s", "CPU s", "frames/s", "MB")};
   for (const StageTime& time : times) {
     const std::string rate =
         time.num_frames > 0 ? fmt::format("{:.1f}", FramesPerSecond(time)) : std::string();
     const std::string name = (time.part_of.empty() ? "" : "  ") + time.name;
-    lines.push_back(fmt::format("{:<10} {:>8.2f} {:>8.2f} {:>8} {:>8.0f}", name, time.wall_s,
+    lines.push_back(fmt::format("{:<11} {:>8.2f} {:>8.2f} {:>8} {:>8.0f}", name, time.wall_s,
                                 time.cpu_s, rate, time.peak_memory_mb));
   }
   return lines;

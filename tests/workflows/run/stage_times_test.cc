@@ -51,6 +51,22 @@ TEST(StageTimes, PartsOfTheImportAddNothingToTheTotal) {
   EXPECT_LT(times[3].cpu_s, 1.0);
 }
 
+// It looks at a few frames before the others, so it has no rate.
+TEST(StageTimes, FormationIsTheFirstPartOfTheImport) {
+  ImportTimes parts;
+  parts[ImportStage::kFormation] = {6.0, 12.0};
+  parts[ImportStage::kDetect] = {0.1, 0.2};
+  StageClock clock;
+  clock.EndImport(parts, 6);
+  const std::vector<StageTime> times = clock.Times();
+  ASSERT_EQ(times.size(), 4u);
+  EXPECT_EQ(times[1].name, "formation");
+  EXPECT_EQ(times[1].part_of, "import");
+  EXPECT_EQ(times[1].num_frames, 0);
+  EXPECT_EQ(times[2].num_frames, 6);
+  EXPECT_THAT(StageTable(times)[2], MatchesRegex("  formation +6.00 +12.00 +[0-9]+"));
+}
+
 TEST(StageTimes, TableAndJsonSayTheSame) {
   const std::vector<StageTime> times = {{"import", "", 2.0, 3.5, 100, 250.0},
                                         {"decode", "import", 1.0, 2.0, 100, 250.0},
