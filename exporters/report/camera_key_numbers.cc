@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "reconstruct/model/weak_geometry.h"
+
 namespace velamap {
 namespace {
 
@@ -38,6 +40,16 @@ std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
       command);
 }
 
+// Nobody gave a calibration that could be wrong: the pictures do not determine the camera, for the
+// reason that a warning names where the geometry is weak.
+std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
+  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
+  if (weak != warnings.end()) return *weak;
+  return "the camera that was found does not fit all pictures: film from more directions, with "
+         "markers tilted and everywhere in the picture, or give a calibration (--camera_path; "
+         "velamap camera_calibrator makes one)";
+}
+
 }  // namespace
 
 ReportStatus LowIsGood(double value, double good, double bad) {
@@ -52,18 +64,23 @@ ReportStatus StatusOf(const CalibrationEvidence& evidence) {
                    kBadShapeChange_sigmas);
 }
 
-std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty) {
-  if (uncertainty == nullptr || uncertainty->calibration.num_changes == 0) return std::nullopt;
-  const CalibrationEvidence& evidence = uncertainty->calibration;
+std::optional<KeyNumber> CalibrationNumber(const ReportInput& input) {
+  if (input.uncertainty == nullptr || input.uncertainty->calibration.num_changes == 0) {
+    return std::nullopt;
+  }
+  const CalibrationEvidence& evidence = input.uncertainty->calibration;
+  const bool is_found = !input.found_cameras.empty();
   return KeyNumber{
       KeyNumberKind::kCalibration,
-      fmt::format("{:.3f} px systematic, {:.2g} sigmas of the shape", evidence.systematic_px,
+      fmt::format("{}{:.3f} px systematic, {:.2g} sigmas of the shape",
+                  is_found ? "found from the pictures, " : "", evidence.systematic_px,
                   evidence.shape_change_in_sigmas),
       fmt::format("part of the residuals and of the markers' sides over the image that another "
                   "calibration explains, and how far that would move the shape; good up to {:g} px "
                   "or {:g} sigmas",
                   kMaxSystematic_px, kGoodShapeChange_sigmas),
-      StatusOf(evidence), CalibrationAdvice(evidence)};
+      StatusOf(evidence),
+      is_found ? FoundCameraAdvice(input.warnings) : CalibrationAdvice(evidence)};
 }
 
 std::optional<KeyNumber> SteadinessNumber(const SteadinessVerdict& steadiness) {
@@ -100,11 +117,11 @@ std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncer
 }
 
 std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& cameras) {
-  constexpr double kGood_percent = 1.0, kBad_percent = 5.0;
+  constexpr double kBad_percent = 5.0;
   const EstimatedCamera* worst = nullptr;
   double worst_percent = -1.0;
   for (const EstimatedCamera& found : cameras) {
-    const double percent = 100 * found.sigmas.front() / found.camera.params.front();
+    const double percent = FocalSigma_percent(found);
     if (percent <= worst_percent) continue;
     worst_percent = percent;
     worst = &found;
@@ -116,8 +133,8 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
                   worst->sigmas.front()),
       fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
                   "length, whose error the sigmas of the shape include; {}",
-                  kGood_percent, DescribeCamera(*worst)),
-      LowIsGood(worst_percent, kGood_percent, kBad_percent),
+                  kGoodFocalSigma_percent, DescribeCamera(*worst)),
+      LowIsGood(worst_percent, kGoodFocalSigma_percent, kBad_percent),
       "the pictures hardly determine the camera: show markers tilted, everywhere in the picture "
       "and from more sides, or give a calibration"};
 }

@@ -18,8 +18,8 @@ ReportStatus LowIsGood(double value, double good, double bad);
 ReportStatus StatusOf(const CalibrationEvidence& evidence);
 
 // Whether another calibration would explain the residuals. None without the marker-aware
-// adjustment, which tests it; `uncertainty` may be null.
-std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty);
+// adjustment, which tests it. Where no calibration was given, the advice is about the pictures.
+std::optional<KeyNumber> CalibrationNumber(const ReportInput& input);
 
 // None for one unchanged camera.
 std::optional<KeyNumber> SteadinessNumber(const SteadinessVerdict& steadiness);

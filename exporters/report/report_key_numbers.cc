@@ -116,7 +116,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   }
   if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
   if (const auto dictionary = DictionaryNumber(input)) numbers.push_back(*dictionary);
-  if (const auto calibration = CalibrationNumber(input.uncertainty)) {
+  if (const auto calibration = CalibrationNumber(input)) {
     numbers.push_back(*calibration);
   }
   if (const auto steadiness = SteadinessNumber(input.steadiness)) numbers.push_back(*steadiness);

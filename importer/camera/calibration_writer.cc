@@ -32,6 +32,10 @@ cv::Mat RowOf(const std::vector<double>& values) { return cv::Mat(values, true).
 
 }  // namespace
 
+double FocalSigma_percent(const EstimatedCamera& found) {
+  return 100 * found.sigmas.front() / found.camera.params.front();
+}
+
 const char* DistortionName(CameraModel model, std::size_t index) {
   constexpr std::array<const char*, 8> kBrown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
   constexpr std::array<const char*, 4> kFisheye = {"k1", "k2", "k3", "k4"};

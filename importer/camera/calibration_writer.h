@@ -16,6 +16,11 @@ struct EstimatedCamera {
   std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
 };
 
+// 1 sigma of the focal length, percent. Up to the good value, a camera that was found from one clip
+// serves others.
+double FocalSigma_percent(const EstimatedCamera& found);
+inline constexpr double kGoodFocalSigma_percent = 1.0;
+
 // k1, k2, p1, ... of the distortion parameter at `index`.
 const char* DistortionName(CameraModel model, std::size_t index);
 

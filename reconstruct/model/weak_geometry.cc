@@ -24,6 +24,9 @@ constexpr double kMaxElongation = 10.0;
 
 constexpr double kMaxWeakParallax = 20.0 * kRadPerDeg;
 
+// In every warning.
+constexpr char kTherefore[] = "; therefore the points are known to ";
+
 // Medians over the 1-sigma ellipsoids of the points.
 struct Ellipsoid {
   double longest_m = 0.0;   // half-axis
@@ -145,13 +148,17 @@ std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovaria
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
   const std::string text = fmt::format(
-      "{}; therefore the points are known to {:.2g} mm along the line of sight, but to {:.2g} mm "
-      "across it: take images from places more than 30 degrees apart",
-      Reason(views), 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
+      "{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: take images from places "
+      "more than 30 degrees apart",
+      Reason(views), kTherefore, 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
     throw DataError("the images leave the shape undetermined: " + text);
   }
   return {text};
+}
+
+bool IsWeakGeometryWarning(const std::string& warning) {
+  return warning.find(kTherefore) != std::string::npos;
 }
 
 }  // namespace velamap

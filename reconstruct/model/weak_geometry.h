@@ -16,4 +16,7 @@ namespace velamap {
 // DataError where the points are uncertain by more than a fifth of the object's extent.
 std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points);
 
+// Whether FindWeakGeometry() made the warning.
+bool IsWeakGeometryWarning(const std::string& warning);
+
 }  // namespace velamap

@@ -109,11 +109,12 @@ void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
   }
 }
 
-void PrintCamera(const AdjustmentResult& adjustment, const WorkspacePaths& paths,
+void PrintCamera(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                  std::ostream& out) {
+  const AdjustmentResult& adjustment = summary.adjustment;
   for (const auto& [camera_id, camera] : adjustment.cameras) {
-    WriteFormatted(out, "camera: found from the images, {}; {} serves the next clip\n",
-                   DescribeCamera(camera), paths.Camera().string());
+    WriteFormatted(out, "camera: found from the images, {}\n",
+                   FoundCameraText(camera, summary.verdict, paths.Camera().string()));
   }
   if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return;
   WriteFormatted(out,
@@ -158,6 +159,14 @@ MetricTable SectionTable(const std::vector<Section>& sections) {
 
 }  // namespace
 
+std::string FoundCameraText(const EstimatedCamera& camera, const Verdict& verdict,
+                            const std::string& path) {
+  const bool is_good =
+      verdict.level != ReportStatus::kBad && FocalSigma_percent(camera) <= kGoodFocalSigma_percent;
+  return fmt::format("{}; {} {}", DescribeCamera(camera), path,
+                     is_good ? "serves the next clip" : "is not good enough for other clips");
+}
+
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out) {
   PrintVerdict(summary.verdict, out);
@@ -169,7 +178,7 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintImages(summary, out);
   PrintSections(summary.shape.sail.sections, out);
   PrintSurfaces(summary.shape, out);
-  PrintCamera(summary.adjustment, paths, out);
+  PrintCamera(summary, paths, out);
   WriteFormatted(out, "look at: {} (in a browser)\n", paths.Report().string());
   WriteFormatted(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
   WriteFormatted(out, "in COLMAP: {}\n", ColmapCommand(paths));

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include "exporters/formats/metrics_report.h"
 #include "exporters/report/verdict.h"
 #include "exporters/shape_exporter.h"
+#include "importer/camera/calibration_writer.h"
 #include "workflows/run/adjustment.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/workspace.h"
@@ -25,6 +27,11 @@ struct ReconstructionSummary {
   ShapeExportReport shape;
   Verdict verdict;
 };
+
+// The camera, and whether the file at `path` that holds it is of use for other clips: not if it is
+// uncertain, or comes from a result that is bad.
+std::string FoundCameraText(const EstimatedCamera& camera, const Verdict& verdict,
+                            const std::string& path);
 
 // The verdict with its reasons, then one line each for the markers, the size, the images, the
 // sections, the surfaces and the camera, and the files to open.

@@ -5,13 +5,16 @@
 
 #include <gmock/gmock.h>
 
+#include "reconstruct/model/weak_geometry.h"
 #include "tests/exporters/report/report_example.h"
 
 namespace velamap {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 KeyNumber Number(KeyNumberKind kind, ReportStatus status) {
@@ -86,6 +89,35 @@ TEST(Verdict, NamesTheCalibrationAndOffersTheRefinementThatExplainsIt) {
               HasSubstr("--BundleAdjustment.refine_extra_params 1"));
   EXPECT_THAT(first_reason(Doubtful(0.3, 0.3)), HasSubstr("refine_extra_params"));
   EXPECT_THAT(first_reason(Doubtful(0.3, 0.3)), HasSubstr("refine_focal_length"));
+}
+
+// Without a calibration there is none to blame: the clip does not determine the camera.
+TEST(Verdict, BlamesTheClipWhereTheCameraWasFoundFromIt) {
+  const ReportExample example = MakeReportExample(2, 4);
+  ReportInput input = example.Input();
+  const AdjustmentUncertainty uncertainty = Doubtful(0.3, 0.95);
+  input.uncertainty = &uncertainty;
+  const Camera& camera = example.model.cameras.begin()->second;
+  input.found_cameras = {{camera, std::vector<double>(camera.params.size(), 1e-3)}};
+  const Verdict verdict = MakeVerdict(input);
+  ASSERT_EQ(verdict.level, ReportStatus::kBad);
+  EXPECT_THAT(verdict.reasons.front().text,
+              AllOf(HasSubstr("film from more directions"), HasSubstr("give a calibration"),
+                    Not(HasSubstr("refine_extra_params"))));
+
+  const std::string warning =
+      "there is hardly any parallax: half of the points are seen within less than 2.5 degrees; "
+      "therefore the points are known to 4.4 mm along the line of sight, but to 0.36 mm across it: "
+      "take images from places more than 30 degrees apart";
+  ASSERT_TRUE(IsWeakGeometryWarning(warning));
+  input.warnings = {"another", warning};
+  const Verdict with_cause = MakeVerdict(input);
+  EXPECT_THAT(with_cause.reasons.front().text, HasSubstr("hardly any parallax"));
+  EXPECT_EQ(std::count_if(with_cause.reasons.begin(), with_cause.reasons.end(),
+                          [](const VerdictReason& reason) {
+                            return reason.text.find("parallax") != std::string::npos;
+                          }),
+            1);
 }
 
 TEST(Verdict, AWarningThatACardRepeatsIsOneReason) {

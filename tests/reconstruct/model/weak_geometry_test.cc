@@ -69,10 +69,12 @@ TEST(WeakGeometry, FlatBoardHeadOnIsNamed) {
 }
 
 TEST(WeakGeometry, LittleParallaxIsNamed) {
-  EXPECT_THAT(WarningsOf(SeenFrom(SceneKind::kSail,
-                                  {{0, -2, 0}, {0.06, -2, 0}, {0, -2, 0.06}, {0.03, -2, 0.03}},
-                                  std::vector<Eigen::Vector3d>(4, {0, 0, 0}))),
-              ElementsAre(HasSubstr("hardly any parallax")));
+  const std::vector<std::string> warnings = WarningsOf(
+      SeenFrom(SceneKind::kSail, {{0, -2, 0}, {0.06, -2, 0}, {0, -2, 0.06}, {0.03, -2, 0.03}},
+               std::vector<Eigen::Vector3d>(4, {0, 0, 0})));
+  ASSERT_THAT(warnings, ElementsAre(HasSubstr("hardly any parallax")));
+  EXPECT_TRUE(IsWeakGeometryWarning(warnings.front()));
+  EXPECT_FALSE(IsWeakGeometryWarning("another warning"));
 }
 
 TEST(WeakGeometry, AnUncertainScaleIsNoLackOfParallax) {

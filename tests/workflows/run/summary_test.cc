@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "workflows/run/run_summary.h"
+
 namespace velamap {
 namespace {
 
@@ -25,6 +27,26 @@ TEST(LeftOutTextTest, MarkersAreCountedByReasonToo) {
 TEST(LeftOutTextTest, ShowsTheFirstNamesOnly) {
   EXPECT_EQ(LeftOutText({{"a", "r"}, {"b", "r"}, {"c", "r"}, {"d", "r"}}),
             "4; 4: r (a, b, c, ...)");
+}
+
+TEST(FoundCameraTextTest, OnlyAGoodCameraServesTheNextClip) {
+  EstimatedCamera found{{CameraModel::kSimplePinhole, 100, 100, {100, 50, 50}}, {0.9, 0.1, 0.1}};
+  Verdict verdict;
+  const auto serves = [&] {
+    const std::string text = FoundCameraText(found, verdict, "camera.yml");
+    const bool says_yes = text.find("; camera.yml serves the next clip") != std::string::npos;
+    const bool says_no = text.find("; camera.yml is not good enough") != std::string::npos;
+    EXPECT_NE(says_yes, says_no) << text;
+    return says_yes;
+  };
+  EXPECT_TRUE(serves());
+  verdict.level = ReportStatus::kCheck;
+  EXPECT_TRUE(serves());
+  verdict.level = ReportStatus::kBad;
+  EXPECT_FALSE(serves());
+  verdict.level = ReportStatus::kGood;
+  found.sigmas.front() = 1.1;
+  EXPECT_FALSE(serves());
 }
 
 TEST(ShellQuoteTest, QuotesOnlyWhatAShellWouldTakeApart) {
