@@ -16,6 +16,7 @@
 #include "exporters/report/verdict.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -124,28 +125,6 @@ Json JsonOf(const std::vector<ReportLeftOut>& left_out) {
   return json;
 }
 
-// Markers for which the caller knows a reason, then other missing markers of the layout.
-std::vector<ReportLeftOut> MarkersLeftOut(const ReportInput& input) {
-  std::vector<ReportLeftOut> left_out = input.markers_left_out;
-  std::set<std::string> names;
-  for (const ReportLeftOut& entry : left_out) names.insert(entry.name);
-  std::map<int, int> num_corners_of;
-  for (const ShapeMarker& marker : input.shape.markers) {
-    num_corners_of[marker.marker_id] =
-        static_cast<int>(std::count_if(marker.x_in_shape_m.begin() + 1, marker.x_in_shape_m.end(),
-                                       [](const auto& x) { return x.has_value(); }));
-  }
-  for (const int marker_id : input.metrics.missing_marker_ids) {
-    const std::string name = std::to_string(marker_id);
-    if (names.count(name) > 0) continue;
-    const int num_corners = num_corners_of[marker_id];
-    left_out.push_back({name, num_corners == 0
-                                  ? "no corner reconstructed: not seen in two of the images used"
-                                  : fmt::format("{} of its 4 corners reconstructed", num_corners)});
-  }
-  return left_out;
-}
-
 void AddFigure(const std::string& name, const std::string& sigma_name,
                const std::optional<Estimate>& figure, Json* json) {
   if (!figure) return;
@@ -232,6 +211,37 @@ Json OriginJson(const ReportInput& input) {
 
 }  // namespace
 
+std::vector<ReportLeftOut> AllMarkersLeftOut(std::vector<ReportLeftOut> known,
+                                             const MarkerShape& shape,
+                                             const ShapeMetrics& metrics) {
+  std::vector<ReportLeftOut> left_out = std::move(known);
+  std::set<std::string> names;
+  for (const ReportLeftOut& entry : left_out) names.insert(entry.name);
+  std::map<int, int> num_corners_of;
+  for (const ShapeMarker& marker : shape.markers) {
+    num_corners_of[marker.marker_id] =
+        static_cast<int>(std::count_if(marker.x_in_shape_m.begin() + 1, marker.x_in_shape_m.end(),
+                                       [](const auto& x) { return x.has_value(); }));
+  }
+  for (const int marker_id : metrics.missing_marker_ids) {
+    const std::string name = std::to_string(marker_id);
+    if (names.count(name) > 0) continue;
+    const int num_corners = num_corners_of[marker_id];
+    left_out.push_back({name, num_corners == 0
+                                  ? "no corner reconstructed: not seen in two of the images used"
+                                  : fmt::format("{} of its 4 corners reconstructed", num_corners)});
+  }
+  return left_out;
+}
+
+std::string BoxText(const Eigen::Vector3d& sides_m, const std::string& times) {
+  const bool is_small = sides_m.maxCoeff() < 1;
+  const Eigen::Vector3d shown = is_small ? kMmPerM * sides_m : sides_m;
+  const int num_digits = is_small ? 2 : 3;
+  return fmt::format("{:.{}f} {} {:.{}f} {} {:.{}f} {}", shown.x(), num_digits, times, shown.y(),
+                     num_digits, times, shown.z(), num_digits, is_small ? "mm" : "m");
+}
+
 std::string ReportJson(const ReportInput& input) {
   if (input.metric_model.images.empty()) {
     throw DataError("the model has no images, so there is nothing to report");
@@ -248,7 +258,8 @@ std::string ReportJson(const ReportInput& input) {
   json["histograms"] = HistogramsJson(input, errors);
   json["scale"] = ScaleJson(input.scale);
   json["images_left_out"] = JsonOf(input.images_left_out);
-  json["markers_left_out"] = JsonOf(MarkersLeftOut(input));
+  json["markers_left_out"] =
+      JsonOf(AllMarkersLeftOut(input.markers_left_out, input.shape, input.metrics));
   if (input.audit != nullptr) json["scale_audit"] = AuditJson(*input.audit);
   if (input.known_points != nullptr && !input.known_points->points.empty()) {
     json["known_points"] = JsonOf(*input.known_points);

@@ -134,6 +134,14 @@ struct ReportInput {
   std::optional<ReportClip> clip = {};  // of a video
 };
 
+// All markers that are left out, for the report and for what the program prints: those for which
+// the caller knows a reason, then other missing markers of the layout.
+std::vector<ReportLeftOut> AllMarkersLeftOut(std::vector<ReportLeftOut> known,
+                                             const MarkerShape& shape, const ShapeMetrics& metrics);
+
+// The sides of a box with `times` between them: in m to 1 mm, below 1 m in mm to 0.01 mm.
+std::string BoxText(const Eigen::Vector3d& sides_m, const std::string& times);
+
 // Returns a JSON object in UTF-8 without line breaks. `<` is escaped, so that the text can be part
 // of an HTML script element. Unknown values have no key. Throws DataError for a model without
 // images.

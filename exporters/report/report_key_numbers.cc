@@ -85,12 +85,7 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
 }
 
 KeyNumber SizeNumber(const MarkerShape& shape) {
-  const Eigen::Vector3d size = BoundingBox(shape);
-  const bool is_small = size.maxCoeff() < 1;
-  const Eigen::Vector3d shown = is_small ? kMmPerM * size : size;
-  return {KeyNumberKind::kSize,
-          fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
-                      is_small ? "mm" : "m"),
+  return {KeyNumberKind::kSize, BoxText(BoundingBox(shape), "\u00d7"),
           "sides of the smallest box around all corners, in any direction", ReportStatus::kNone};
 }
 

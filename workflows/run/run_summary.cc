@@ -35,6 +35,15 @@ std::string ColmapCommand(const WorkspacePaths& paths) {
                      ShellQuote(paths.Model().string()));
 }
 
+// Those that the registration dropped, and those that are not whole: as the report counts them.
+std::vector<ReportLeftOut> MarkersLeftOut(const ReconstructionSummary& summary) {
+  std::vector<ReportLeftOut> dropped;
+  for (const DroppedMarker& marker : summary.dropped_markers) {
+    dropped.push_back({std::to_string(marker.marker_id), marker.reason});
+  }
+  return AllMarkersLeftOut(std::move(dropped), summary.shape.shape, summary.shape.metrics);
+}
+
 void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   const ShapeMetrics& metrics = summary.shape.metrics;
   WriteFormatted(out, "markers: {}", metrics.NumWholeOfLayout());
@@ -49,14 +58,15 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
     }
   }
   out << '\n';
-  if (!summary.dropped_markers.empty()) {
-    WriteFormatted(out, "markers left out: {}\n", MarkersLeftOutText(summary.dropped_markers));
+  std::vector<LeftOutImage> left_out;
+  for (const ReportLeftOut& marker : MarkersLeftOut(summary)) {
+    left_out.push_back({marker.name, marker.reason});
   }
+  if (!left_out.empty()) WriteFormatted(out, "markers left out: {}\n", LeftOutText(left_out));
 }
 
 void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
-  const Eigen::Vector3d box_m = BoundingBox(shape.shape);
-  WriteFormatted(out, "size: {:.3f} x {:.3f} x {:.3f} m", box_m.x(), box_m.y(), box_m.z());
+  WriteFormatted(out, "size: {}", BoxText(BoundingBox(shape.shape), "x"));
   if (shape.scale.relative_sigma) {
     WriteFormatted(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
   }
@@ -210,8 +220,8 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
       reasons,
       LeftOutTable("images_left_out", "image_name", summary.left_out,
                    [](const LeftOutImage& image) { return image.image_name; }),
-      LeftOutTable("markers_left_out", "marker_id", summary.dropped_markers,
-                   [](const DroppedMarker& marker) { return marker.marker_id; }),
+      LeftOutTable("markers_left_out", "marker_id", MarkersLeftOut(summary),
+                   [](const ReportLeftOut& marker) { return std::stoi(marker.name); }),
       SectionTable(shape.sail.sections.sections),
       LeftOutTable("sections_missing", "section", shape.sail.sections.missing,
                    [](const MissingSection& missing) { return missing.part + " " + missing.name; }),

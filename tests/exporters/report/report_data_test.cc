@@ -141,6 +141,21 @@ TEST_F(ReportData, MissingMarkersHaveReasons) {
   EXPECT_EQ(left_out.at(0).at("reason"), "seen in one image");
 }
 
+// The program prints the same markers, so it asks for them too.
+TEST_F(ReportData, MarkersLeftOutAreTheDroppedAndTheMissing) {
+  const auto left_out =
+      AllMarkersLeftOut({{"5", "on two places"}}, example_.shape, example_.metrics);
+  ASSERT_EQ(left_out.size(), 2u);
+  EXPECT_EQ(left_out[0].reason, "on two places");
+  EXPECT_EQ(left_out[1].name, "8000");
+}
+
+// Small objects keep their digits.
+TEST(BoxText, IsInMillimetresBelowAMetre) {
+  EXPECT_EQ(BoxText({0.0403, 0.04015, 0.04001}, "x"), "40.30 x 40.15 x 40.01 mm");
+  EXPECT_EQ(BoxText({4.914, 3.097, 0.419}, "by"), "4.914 by 3.097 by 0.419 m");
+}
+
 // The rejected corners of a marker are not of the shape, and the marker counts as not detected.
 TEST_F(ReportData, ThePictureSaysWhatWasRejectedAndNotDetected) {
   ReportExample example = example_;

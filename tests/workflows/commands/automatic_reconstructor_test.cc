@@ -50,7 +50,7 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   EXPECT_EQ(NumErrorLines(run.err), 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("verdict: "));
   for (const char* text :
-       {"markers: 8 of 8, known to ", "size: ", " m, known to ", "images: 16 of 16 used, 0."}) {
+       {"markers: 8 of 8, known to ", "size: ", " mm, known to ", "images: 16 of 16 used, 0."}) {
     EXPECT_THAT(run.out, HasSubstr(text));
   }
   EXPECT_THAT(run.out, Not(HasSubstr("left out")));
