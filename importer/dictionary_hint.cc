@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "importer/base/log.h"
 #include "importer/refine/marker_detector.h"
 
 namespace velamap {
@@ -17,6 +19,7 @@ constexpr int kMaxNumSamples = 12;
 constexpr int kMinNumMarkers = 2;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
+constexpr std::chrono::seconds kTalkInterval{1};
 constexpr double kMaxChance = 0.01;  // that the ids of false markers are all among the first
 
 // The largest dictionaries. The smaller ones of a family are the first markers of the largest.
@@ -68,7 +71,12 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
   std::map<std::pair<std::string, bool>, Found> found_by_choice;
   bool convinced = false;
   int num_images = 0;
+  auto last_said = std::chrono::steady_clock::now();
   for (; num_images < static_cast<int>(gray_images.size()) && !convinced; ++num_images) {
+    if (std::chrono::steady_clock::now() - last_said > kTalkInterval) {
+      last_said = std::chrono::steady_clock::now();
+      LogInfo("trying all dictionaries: picture {} of {}", num_images + 1, gray_images.size());
+    }
     const cv::Mat& gray = gray_images[static_cast<std::size_t>(num_images)];
     for (const char* family : kFamilies) {
       const Dictionary dictionary = LoadDictionary(family);

@@ -16,14 +16,20 @@ namespace velamap {
 namespace {
 
 constexpr int kMinBorderDistancePx = 3;  // of a corner
+// Smaller cells than a pixel show no code, so a marker of n cells has a contour of 4 n pixels,
+// or 2.8 n where it is turned by 45 degrees. Without this bound, each dot of a small dithered
+// picture is an outline to decode.
+constexpr double kLeastContourPxPerCell = 2.5;
 // Of a second look around an outline, which may lie two pixels inside its marker. All else reaches
 // as many pixels of the enlarged picture as of the image at the first look.
 constexpr int kSecondReachPx = 2 + (kSearchReachPx + kEnlargement - 1) / kEnlargement;
 
-// For a region of an image; the smallest perimeter is relative to the size of the image.
+// For a region of an image; the smallest perimeter is relative to the size of the image, but at
+// least `least_contour_px`.
 cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
                                                       const ArucoDetectionOptions& options,
-                                                      int image_size_px, int region_size_px) {
+                                                      double least_contour_px, int image_size_px,
+                                                      int region_size_px) {
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   // Windows of 5 and 13 px find as many markers as OpenCV's 3, 13 and 23 px, and more small ones
@@ -41,14 +47,12 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   parameters->perspectiveRemoveIgnoredMarginPerCell = 0.3;
   parameters->minDistanceToBorder = kMinBorderDistancePx;
   parameters->markerBorderBits = border_bits;
-  parameters->minMarkerPerimeterRate = options.min_marker_perimeter_rate;
   parameters->errorCorrectionRate = options.error_correction_rate;
-  if (region_size_px != image_size_px) {
-    // OpenCV truncates the product of rate and size to whole pixels; half a pixel more makes it the
-    // number of the whole image.
-    const double perimeter_px = std::floor(options.min_marker_perimeter_rate * image_size_px);
-    parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
-  }
+  // OpenCV truncates the product of rate and size to whole pixels; half a pixel more makes it the
+  // number of the whole image.
+  const double perimeter_px = std::max(
+      std::floor(options.min_marker_perimeter_rate * image_size_px), std::floor(least_contour_px));
+  parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
   return parameters;
 }
 
@@ -110,6 +114,9 @@ struct Search {
   const ArucoDetectionOptions& options;
 
   cv::Rect Image() const { return {{}, dark_on_light.size()}; }
+  int ImageSizePx() const { return std::max(dark_on_light.cols, dark_on_light.rows); }
+  int NumCells() const { return CellsPerSide(dictionary, border_bits); }
+  double LeastContourPx() const { return kLeastContourPxPerCell * NumCells(); }
 };
 
 void AddQuads(const Search& search, const Found& found, bool is_second_look,
@@ -127,10 +134,9 @@ void AddQuads(const Search& search, const Found& found, bool is_second_look,
 
 // Searches around an outline whose code could not be read.
 void LookAgain(const Search& search, const cv::Rect& part, std::vector<MarkerQuad>* quads) {
-  const int image_size_px = std::max(search.dark_on_light.cols, search.dark_on_light.rows);
-  const auto parameters =
-      MakeParameters(search.border_bits, search.options, kEnlargement * image_size_px,
-                     kEnlargement * std::max(part.width, part.height));
+  const auto parameters = MakeParameters(
+      search.border_bits, search.options, kEnlargement * search.LeastContourPx(),
+      kEnlargement * search.ImageSizePx(), kEnlargement * std::max(part.width, part.height));
   parameters->minDistanceToBorder = kEnlargement * kMinBorderDistancePx;
   Found found =
       Detect(EnlargedAndSharpened(search.dark_on_light(part)), search.dictionary, parameters);
@@ -158,10 +164,9 @@ void RemoveSecondLooksOfRead(std::vector<MarkerQuad>* quads) {
 
 void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again,
                   std::vector<MarkerQuad>* quads) {
-  const int image_size_px = std::max(search.dark_on_light.cols, search.dark_on_light.rows);
   Found found = Detect(search.dark_on_light(region), search.dictionary,
-                       MakeParameters(search.border_bits, search.options, image_size_px,
-                                      std::max(region.width, region.height)));
+                       MakeParameters(search.border_bits, search.options, search.LeastContourPx(),
+                                      search.ImageSizePx(), std::max(region.width, region.height)));
   for (std::vector<Outline>* outlines : {&found.read, &found.rejected}) {
     for (Outline& outline_px : *outlines) {
       for (cv::Point2f& corner : outline_px) corner += cv::Point2f(region.tl());
@@ -169,8 +174,7 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   }
   AddQuads(search, found, false, quads);
   if (!looks_again) return;
-  const int num_cells = CellsPerSide(search.dictionary, search.border_bits);
-  for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, num_cells)) {
+  for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, search.NumCells())) {
     const cv::Rect around = cv::boundingRect(outline_px);
     // What the border of the region cuts belongs to another region.
     if (Contains(region, Grown(around, kSearchReachPx) & search.Image())) {

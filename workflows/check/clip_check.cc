@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
 #include "importer/marker_importer.h"
 #include "workflows/check/clip_frames.h"
@@ -189,6 +190,7 @@ class Checker {
       Propose(importer.database_path, layout);
     }
     if (!MeasuresPrecision()) return;
+    LogInfo("reconstructing the frames for the precision");
     try {
       check_.facts.precision =
           MeasurePrecision(importer.database_path, layout, options_.num_threads);
@@ -204,6 +206,7 @@ class Checker {
       by_name[image.detections.image_name] = &image.detections;
     }
     ClipFacts& facts = check_.facts;
+    LogInfo("looking for misprinted markers in {} frames", clip.frames.size());
     facts.contradictions = DescribeFaults(FindPrintFaults(clip.frames, by_name, layout, detection),
                                           static_cast<int>(facts.num_frames_of_id.size()),
                                           static_cast<int>(clip.frames.size()));
@@ -211,6 +214,7 @@ class Checker {
 
   void Propose(const std::string& database_path, const Layout& layout) {
     ClipFacts& facts = check_.facts;
+    LogInfo("locating the markers for the layout: this takes as long as a reconstruction");
     try {
       const ClipMap map = MapClip(database_path, layout, options_.num_threads);
       check_.proposal =

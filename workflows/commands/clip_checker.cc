@@ -44,7 +44,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
          Common(PathOption(
              "proposed_layout_path", PathUse::kWritesFile, &options->proposed_layout_path,
              "layout file with the parts, lines and lengths that the clip shows, or the "
-             "given layout corrected; left out: none")),
+             "given layout corrected, which takes a minute; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
           "number of frames of a video to look at", FromTo(5, 1000)}}},
        DescribeOptions(&options->markers, true),

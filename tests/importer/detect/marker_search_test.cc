@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "importer/base/stage_timer.h"
 #include "tests/importer/marker_builders.h"
 #include "tests/support/render/marker_renderer.h"
 #include "tests/support/test_seed.h"
@@ -96,6 +97,22 @@ double MaxCornerErrorPx(const MarkerQuad& found, const PlacedMarkerInCam& marker
 }
 
 // OpenCV keeps the largest of close outlines before it reads the codes, which is that of the paper.
+// As in a small picture of few colours, whose dots imitate the others.
+TEST(SearchMarkers, DotsTooSmallForACodeTakeNoTime) {
+  cv::Mat gray(270, 480, CV_8UC1, cv::Scalar(200));
+  for (int y = 4; y < 264; y += 5) {
+    for (int x = 4; x < 474; x += 5) gray(cv::Rect(x, y, 2, 2)).setTo(60);
+  }
+  constexpr int kNumSearches = 3;
+  constexpr double kMaxCpu_s = 2.0;  // without the bound of the contour, each takes as long
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  const double begin_s = ProcessCpuSeconds();
+  for (int i = 0; i < kNumSearches; ++i) {
+    EXPECT_TRUE(SearchMarkers(gray, dictionary, 1, {}).empty());
+  }
+  EXPECT_LT(ProcessCpuSeconds() - begin_s, kMaxCpu_s);
+}
+
 TEST(SearchMarkers, TheEdgeOfNarrowPaperOnADarkGroundHidesNoMarker) {
   std::mt19937 random(TestSeed());
   const auto between = [&](double low, double high) {
