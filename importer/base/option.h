@@ -55,6 +55,7 @@ enum class PathUse {
   kReadsModel,       // the folder of a COLMAP model
   kReadsShape,       // a shape.csv, or the folder that holds it
   kWritesFile,       // replaces it, or adds to it
+  kWritesOwnFile,    // replaces only what velamap wrote: a file that people edit, such as a layout
   kWritesFolder,     // replaces it as a whole
   kAddsToFolder,     // replaces none of its files but velamap's
   kWritesWorkspace,  // files and folders of a workspace

@@ -49,6 +49,10 @@ std::string ReadBytes(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+bool IsProposedLayout(const std::string& text) {
+  return text.rfind(std::string("# ") + kProposedLayout, 0) == 0;
+}
+
 bool BeginsAsOneOfOurs(const std::string& text) {
   const auto begins = [&](const std::string& with) { return text.rfind(with, 0) == 0; };
   const std::string first_line = text.substr(0, text.find('\n'));
@@ -58,15 +62,16 @@ bool BeginsAsOneOfOurs(const std::string& text) {
   return begins("image_name,registered,num_markers,") ||   // registration.csv
          begins("[\n {\n  \"stage\": \"") ||               // timing.json
          begins("%YAML:1.0\n---\n# found by velamap ") ||  // camera.yml
-         (begins("<!DOCTYPE html>") &&                     // report, page of a camera
+         begins("%YAML:1.0\n---\n# velamap camera_calibrator: ") || IsProposedLayout(text) ||
+         (begins("<!DOCTYPE html>") &&  // report, page of a camera
           title_line.find("velamap") != std::string::npos) ||
          (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
 }
 
-// Also for a text without a seal.
+// Also for a text without a seal, as earlier versions wrote it; but layouts are made to be edited.
 bool HasItsSeal(const std::string& text) {
   const std::size_t seal = text.rfind(kSeal);
-  if (seal == std::string::npos) return true;
+  if (seal == std::string::npos) return !IsProposedLayout(text);
   constexpr std::size_t kLongestEnd = 5;                // " -->" and the end of the line
   const std::size_t line = text.rfind('\n', seal) + 1;  // 0 if there is none
   const std::size_t hash = seal + sizeof(kSeal) - 1;
@@ -224,7 +229,7 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
     } else if (IsRegularFile(output.path)) {
       CheckNotProtected(output.path);
     }
-    if (output.is_default_name) CheckOwnFile(output.used_by, output.path);
+    if (output.replaces_only_own) CheckOwnFile(output.used_by, output.path);
   }
 }
 

@@ -1,8 +1,9 @@
 // What velamap may replace, and what it may not: the one rule for all commands.
 //
 //   file     one that the user has named as output, unless it is also an input or the output of
-//            another option, possibly under another name. Under a default name, only a file that
-//            velamap wrote (CheckOwnFile)
+//            another option, possibly under another name. Under a default name, and for layouts and
+//            calibrations, which people write and edit, only a file that velamap wrote
+//            (CheckOwnFile)
 //   folder   as a whole, unless it is write-protected, if velamap wrote every file in it and nobody
 //            has changed one since. Each folder that velamap writes holds a record of its files,
 //            kFolderRecord
@@ -22,6 +23,9 @@ namespace velamap {
 // content.
 inline constexpr char kFolderRecord[] = ".velamap";
 
+// The first line of a layout that velamap proposes, without the "# " of a comment.
+inline constexpr char kProposedLayout[] = "Proposed by velamap clip_checker.";
+
 // The text of the record for what is in `folder` now; empty if it holds no files.
 std::string MakeFolderRecord(const std::filesystem::path& folder);
 
@@ -32,8 +36,8 @@ std::string MakeFolderRecord(const std::filesystem::path& folder);
 void CheckReplaceableFolder(const std::filesystem::path& path);
 
 // Throws InputError, which begins with `used_by`, if the path is a file that does not begin as one
-// of velamap's tables, pages, calibrations or logs, or that was changed after velamap sealed it.
-// Nothing happens if it is missing.
+// of velamap's tables, pages, calibrations, proposed layouts or logs, or that was changed after
+// velamap sealed it. A layout without a seal is the user's. Nothing happens if it is missing.
 void CheckOwnFile(const std::string& used_by, const std::filesystem::path& path);
 
 // `text` and a last line, a comment, with the hash of it. The line begins with `comment_begin` and
@@ -49,12 +53,12 @@ struct UsedPath {
   std::string used_by;  // such as --csv_path, for messages
   std::filesystem::path path;
   bool is_replaced_folder = false;  // outputs only: a folder that is replaced as a whole
-  bool is_default_name = false;     // outputs only: a file whose name the user has not given
+  bool replaces_only_own = false;   // outputs only: a file that CheckOwnFile() has to allow
 };
 
 // Throws InputError, naming both options, if an output is one of the inputs or another output, also
 // through links, or lies in a folder that is replaced, if such a folder holds an input or is not
-// replaceable, or if a file under a default name is not velamap's.
+// replaceable, or if a file is not velamap's where only such a one may be replaced.
 void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPath>& outputs);
 
 // Throws InputError that begins with `where` if the name of an image leads out of the folder of

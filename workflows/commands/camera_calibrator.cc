@@ -35,7 +35,7 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
       "--image_path board.mp4 --output_path camera.yml",
       {{"Input and output",
         {ImagePathOption(paths),
-         Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+         Required(PathOption("output_path", PathUse::kWritesOwnFile, &paths->output_path,
                              "camera file for the other commands, with sigmas")),
          BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
                                     "page to look at (HTML); left out: beside the camera file, "

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -5,7 +8,9 @@
 #include <fmt/ranges.h>
 
 #include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/layout/layout_writer.h"
 #include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
@@ -42,7 +47,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
                            "PNG of the frame with most markers, with their outlines and ids; left "
                            "out: none")),
          Common(PathOption(
-             "proposed_layout_path", PathUse::kWritesFile, &options->proposed_layout_path,
+             "proposed_layout_path", PathUse::kWritesOwnFile, &options->proposed_layout_path,
              "layout file with the parts, lines and lengths that the clip shows, or the "
              "given layout corrected, which takes a minute; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
@@ -66,8 +71,21 @@ void RefuseUnusedOptions(const ClipCheckerCommandOptions& options) {
   }
 }
 
+// A picture in PNG under the name of a JPEG would replace a photograph with what its name denies.
+void CheckPictureName(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (path.empty() || extension == ".png") return;
+  throw InputError(fmt::format(
+      "--output_path: {} does not end in .png, and the picture is a PNG; give a name such as "
+      "frame.png",
+      path));
+}
+
 void Validate(ClipCheckerCommandOptions* options) {
   ClipCheckOptions& check = options->check;
+  CheckPictureName(options->paths.output_path);
   RefuseUnusedOptions(*options);
   check.detection.Check();
   check.video.Check();
@@ -144,12 +162,13 @@ void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptio
                             .lexically_proximate(AbsolutePath(path).parent_path())
                             .string();
   }
-  std::string comment = "Proposed by velamap clip_checker.\n";
+  std::string comment = std::string(kProposedLayout) + "\n";
   if (!options.check.layout) {
     comment += "marker_length: NOT KNOWN, set to 0.1 m; measure a black square and correct it.\n";
   }
   for (const std::string& note : proposal.notes) comment += note + "\n";
-  WriteFileAtomically(path, [&](std::ostream& out) { out << LayoutText(layout, comment); });
+  WriteFileAtomically(
+      path, [&](std::ostream& out) { out << WithSeal(LayoutText(layout, comment), "# ", ""); });
   WriteFormatted(std::cout, "proposed_layout_path: {}\n", path);
 }
 

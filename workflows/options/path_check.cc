@@ -82,6 +82,8 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, bo
       return AddShape(used_by, path, paths);
     case PathUse::kWritesFile:
       return paths->outputs.push_back({used_by, path, false, is_default_name});
+    case PathUse::kWritesOwnFile:
+      return paths->outputs.push_back({used_by, path, false, true});
     case PathUse::kWritesFolder:
       return paths->outputs.push_back({used_by, path, true});
     case PathUse::kAddsToFolder:

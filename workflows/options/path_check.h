@@ -23,7 +23,8 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 // another output. Registers the paths, so that logs and reports leave out their folders
 // (importer/text/shown_text.h). Throws InputError for an input that is a pipe or a device, for an
 // output that is a pipe or, where a file is needed, a folder, and where CheckOutputs()
-// (importer/base/replacement.h) does, for example if the user has a file of a default name.
+// (importer/base/replacement.h) does: if a file of the user's is where an output that is left out,
+// a layout or a calibration goes.
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap

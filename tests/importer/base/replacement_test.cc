@@ -83,6 +83,7 @@ TEST(OwnFile, IsToldByItsBeginningAndSeal) {
   for (const std::string ours : {"", "image_name,registered,num_markers,x\na,1,2,3\n",
                                  "[\n {\n  \"stage\": \"import\"\n }]\n",
                                  "%YAML:1.0\n---\n# found by velamap 0.2.0\nimage_width: 3\n",
+                                 "%YAML:1.0\n---\n# velamap camera_calibrator: RADIAL\n",
                                  "<!DOCTYPE html>\n<title>boat – velamap report</title>\n"}) {
     Write(file, ours);
     EXPECT_NO_THROW(check()) << ours;
@@ -101,6 +102,21 @@ TEST(OwnFile, IsToldByItsBeginningAndSeal) {
   for (const std::string& changed : {edited, sealed + "note\n", "<!DOCTYPE html>\n" + sealed}) {
     Write(file, changed);
     ExpectThrows<InputError>(check, {"was changed after velamap wrote it"});
+  }
+}
+
+TEST(OwnFile, IsAProposedLayoutOnlyWithItsSeal) {
+  const TempDir dir;
+  const fs::path file = dir / "layout.yml";
+  const auto check = [&] { CheckOwnFile("--proposed_layout_path", file); };
+  const std::string text = "# Proposed by velamap clip_checker.\nmarker_length: 0.1\n";
+  Write(file, WithSeal(text, "# ", ""));
+  EXPECT_NO_THROW(check());
+  std::string edited = WithSeal(text, "# ", "");
+  edited.replace(edited.find("0.1"), 3, "0.2");
+  for (const std::string& changed : {text, edited}) {
+    Write(file, changed);
+    ExpectThrows<InputError>(check, {"was changed after velamap wrote it", "move it away"});
   }
 }
 
