@@ -109,7 +109,7 @@ house_folder(workflows/run PUBLIC
   adjustment camera_checks central_frame_sweep logging pipeline progress report_input run_summary stage_times summary
   version versions workspace)
 house_folder(workflows/proposal PUBLIC
-  clip_map layout_correction layout_proposal print_faults)
+  clip_map layout_correction layout_proposal print_faults rare_ids)
 house_folder(workflows/check PUBLIC
   clip_check clip_frames clip_limits clip_verdict dictionary_search)
 house_folder(workflows/plan PUBLIC

@@ -14,6 +14,7 @@
 #include "importer/database/colmap_database.h"
 #include "importer/marker_importer.h"
 #include "workflows/check/clip_frames.h"
+#include "workflows/check/clip_ids.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"
 #include "workflows/check/marked_frame.h"
@@ -39,24 +40,6 @@ Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, Clip
     facts->second_dictionary = DictionaryName(hints[1]);
   }
   return UseDictionary(hints[0], detection);
-}
-
-void CountIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
-  std::map<int, int> foreign;
-  for (const DatabaseImage& image : images) {
-    for (const MarkerDetection& marker : image.detections.markers) {
-      ++facts->num_frames_of_id[marker.marker_id];
-    }
-    for (const RejectedDetection& rejected : image.detections.rejected) {
-      if (rejected.reason == kNotInLayout) ++foreign[rejected.detection.marker_id];
-    }
-  }
-  for (const auto& [marker_id, num_frames] : foreign) {
-    if (num_frames > 1) facts->ids_not_in_layout.push_back(marker_id);  // once may be a mistake
-  }
-  for (const int marker_id : MarkerIds(layout)) {
-    if (facts->num_frames_of_id.count(marker_id) == 0) facts->ids_never_seen.push_back(marker_id);
-  }
 }
 
 // Frames in order with enough markers, as long as no frame between them has too few.
@@ -231,7 +214,7 @@ class Checker {
   void CollectFacts(const ClipFrames& clip, int frame_step, const Layout& layout,
                     const std::vector<DatabaseImage>& images) {
     ClipFacts& facts = check_.facts;
-    CountIds(images, layout, &facts);
+    CollectIds(images, layout, &facts);
     std::map<std::string, const FrameDetections*> by_name;
     std::vector<double> sides_px;
     int num_with_enough = 0;

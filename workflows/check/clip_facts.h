@@ -46,7 +46,8 @@ struct ClipFacts {
   std::string no_markers_because;       // the importer's reason why there are none
   std::map<int, int> num_frames_of_id;  // of markers that the layout names, or of all
   std::vector<int> ids_never_seen;      // of the layout
-  std::vector<int> ids_not_in_layout;   // in two frames or more
+  std::vector<int> ids_not_in_layout;   // seen too often to be misread
+  std::vector<int> ids_read_rarely;     // probably misread: not in the layout, or without one any
   bool has_layout = false;
 
   Statistics side_px;

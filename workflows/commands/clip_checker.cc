@@ -142,6 +142,10 @@ void Print(const ClipFacts& facts, std::ostream& out) {
     WriteFormatted(out, "ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
     WriteFormatted(out, "ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
   }
+  if (!facts.ids_read_rarely.empty()) {
+    WriteFormatted(out, "ids_read_rarely: {} (probably misread)\n",
+                   IdRanges(facts.ids_read_rarely));
+  }
   if (facts.side_px.count > 0) {
     WriteFormatted(out, "side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
                    facts.side_px.min, facts.side_px.max);

@@ -18,14 +18,13 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
+#include "workflows/proposal/rare_ids.h"
 #include "workflows/run/camera_checks.h"
 
 namespace velamap {
 namespace {
 
-// An id that is seen in fewer frames than this fraction of the median is probably misread.
-constexpr double kSeldom = 0.2;
-constexpr int kMinFrames = 2;
+constexpr int kMinFrames = 2;  // of a marker that has a place
 // A body of fewer markers cannot be told from misread ids.
 constexpr std::size_t kMinOnBody = 4;
 
@@ -53,7 +52,7 @@ struct FrameCounts {
 };
 
 FrameCounts CountFrames(const std::vector<DatabaseImage>& images) {
-  FrameCounts counts;
+  FrameCounts counts{CountFramesOfIds(images), {}};
   for (const DatabaseImage& image : images) {
     std::map<int, std::vector<const MarkerDetection*>> seen;
     for (const MarkerDetection& marker : image.detections.markers) {
@@ -63,7 +62,6 @@ FrameCounts CountFrames(const std::vector<DatabaseImage>& images) {
       seen[rejected.detection.marker_id].push_back(&rejected.detection);
     }
     for (const auto& [marker_id, detections] : seen) {
-      ++counts.num_frames[marker_id];
       const bool is_twice = std::any_of(detections.begin(), detections.end(),
                                         [&first = *detections.front()](const auto* other) {
                                           return (CornerMean(*other) - CornerMean(first)).norm() >
@@ -174,14 +172,16 @@ class Mapper {
 
  private:
   std::set<int> OftenSeen() {
-    std::vector<double> nums;
-    for (const auto& [marker_id, num] : counts_.num_frames) nums.push_back(num);
-    if (nums.empty()) return {};
-    const double least = std::max<double>(kMinFrames, kSeldom * Median(std::move(nums)));
+    const std::set<int> rare = FindRareIds(counts_.num_frames);
     std::set<int> ids;
     for (const auto& [marker_id, num] : counts_.num_frames) {
-      if (num >= least) ids.insert(marker_id);
-      if (num < least) map_.left_out[marker_id] = "seen in few frames";
+      if (rare.count(marker_id) > 0) {
+        map_.left_out[marker_id] = "read rarely, probably misread";
+      } else if (num < kMinFrames) {
+        map_.left_out[marker_id] = "seen in one frame only";
+      } else {
+        ids.insert(marker_id);
+      }
     }
     return ids;
   }

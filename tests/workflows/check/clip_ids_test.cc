@@ -1,0 +1,76 @@
+#include "workflows/check/clip_ids.h"
+
+#include <gmock/gmock.h>
+
+namespace velamap {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Key;
+using testing::Not;
+using testing::Pair;
+
+MarkerDetection Marker(int marker_id) {
+  MarkerDetection marker;
+  marker.marker_id = marker_id;
+  return marker;
+}
+
+// Markers 1 to 3 in each of 20 frames, and an id in the first `num_frames` of them that no layout
+// names.
+std::vector<DatabaseImage> Images(int unnamed_id, int num_frames, bool is_rejected) {
+  std::vector<DatabaseImage> images(20);
+  for (int i = 0; i < 20; ++i) {
+    FrameDetections& frame = images[static_cast<std::size_t>(i)].detections;
+    frame.markers = {Marker(1), Marker(2), Marker(3)};
+    if (i >= num_frames) continue;
+    if (is_rejected) {
+      frame.rejected.push_back({Marker(unnamed_id), kNotInLayout});
+    } else {
+      frame.markers.push_back(Marker(unnamed_id));
+    }
+  }
+  return images;
+}
+
+Layout FourMarkers() {
+  Layout layout = MakeLayout("DICT_4X4_250", 0.1);
+  layout.parts.emplace_back();
+  layout.parts[0].name = "sail";
+  layout.parts[0].marker_ids = {1, 2, 3, 4};
+  return layout;
+}
+
+TEST(ClipIds, WhatIsReadRarelyIsNoMarkerThatTheLayoutLacks) {
+  ClipFacts facts;
+  CollectIds(Images(244, 3, true), FourMarkers(), &facts);
+  EXPECT_THAT(facts.ids_not_in_layout, IsEmpty());
+  EXPECT_THAT(facts.ids_read_rarely, ElementsAre(244));
+  EXPECT_THAT(facts.ids_never_seen, ElementsAre(4));
+  EXPECT_THAT(facts.num_frames_of_id, ElementsAre(Pair(1, 20), Pair(2, 20), Pair(3, 20)));
+}
+
+TEST(ClipIds, WhatIsReadOftenIs) {
+  ClipFacts facts;
+  CollectIds(Images(244, 5, true), FourMarkers(), &facts);
+  EXPECT_THAT(facts.ids_not_in_layout, ElementsAre(244));
+  EXPECT_THAT(facts.ids_read_rarely, IsEmpty());
+}
+
+TEST(ClipIds, WithoutALayoutARareIdIsNoMarker) {
+  ClipFacts facts;
+  CollectIds(Images(244, 3, false), MakeLayout("DICT_4X4_250", 0.1), &facts);
+  EXPECT_THAT(facts.num_frames_of_id, Not(Contains(Key(244))));
+  EXPECT_THAT(facts.ids_read_rarely, ElementsAre(244));
+}
+
+TEST(ClipIds, WithoutPicturesNoMarkerIsSeen) {
+  ClipFacts facts;
+  CollectIds({}, FourMarkers(), &facts);
+  EXPECT_THAT(facts.ids_never_seen, ElementsAre(1, 2, 3, 4));
+}
+
+}  // namespace
+}  // namespace velamap

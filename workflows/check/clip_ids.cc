@@ -1,0 +1,35 @@
+#include "workflows/check/clip_ids.h"
+
+#include <map>
+#include <set>
+
+#include "importer/detect/detection.h"
+#include "workflows/proposal/rare_ids.h"
+
+namespace velamap {
+
+void CollectIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
+  const std::map<int, int> num_frames_of_id = CountFramesOfIds(images);
+  const std::set<int> rare = FindRareIds(num_frames_of_id);
+  std::set<int> foreign;
+  for (const DatabaseImage& image : images) {
+    for (const MarkerDetection& marker : image.detections.markers) {
+      // Without the ids of a layout, nothing else tells a misread id from a marker.
+      if (!layout.HasMarkers() && rare.count(marker.marker_id) > 0) continue;
+      ++facts->num_frames_of_id[marker.marker_id];
+    }
+    for (const RejectedDetection& rejected : image.detections.rejected) {
+      if (rejected.reason == kNotInLayout) foreign.insert(rejected.detection.marker_id);
+    }
+  }
+  if (!layout.HasMarkers()) facts->ids_read_rarely.assign(rare.begin(), rare.end());
+  for (const int marker_id : foreign) {
+    const bool is_doubtful = rare.count(marker_id) > 0 || num_frames_of_id.at(marker_id) == 1;
+    (is_doubtful ? facts->ids_read_rarely : facts->ids_not_in_layout).push_back(marker_id);
+  }
+  for (const int marker_id : MarkerIds(layout)) {
+    if (facts->num_frames_of_id.count(marker_id) == 0) facts->ids_never_seen.push_back(marker_id);
+  }
+}
+
+}  // namespace velamap
