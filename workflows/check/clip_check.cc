@@ -28,7 +28,7 @@ namespace velamap {
 namespace {
 
 constexpr int kNumFramesWithPixels = 10;
-constexpr int kFewMarkers = 4;
+constexpr std::size_t kFewMarkers = 4;
 
 // The layout of the best dictionary; of none where no dictionary finds markers.
 Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
@@ -162,16 +162,15 @@ class Checker {
       check_.facts.num_frames_damaged = report.num_frames_damaged;
     } catch (const DataError& error) {
       check_.facts.no_markers_because = error.what();
-      if (options_.proposes_layout) FindFaults(clip, {}, layout, importer.detection);
+      CollectIds({}, layout, &check_.facts);
+      FindFaults(clip, {}, layout, importer.detection);
       return;
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
     CollectFacts(clip, video.frame_step, layout, images);
-    if (options_.proposes_layout) {
-      FindFaults(clip, images, layout, importer.detection);
-      Propose(importer.database_path, layout);
-    }
+    FindFaults(clip, images, layout, importer.detection);
+    if (options_.proposes_layout) Propose(importer.database_path, layout);
     if (!MeasuresPrecision()) return;
     LogInfo("reconstructing the frames for the precision");
     try {
@@ -182,17 +181,27 @@ class Checker {
     }
   }
 
+  // Of the prints, for a layout; of the pictures, where the clip hardly shows any marker.
   void FindFaults(const ClipFrames& clip, const std::vector<DatabaseImage>& images,
                   const Layout& layout, const ArucoDetectionOptions& detection) {
+    ClipFacts& facts = check_.facts;
+    if (!options_.proposes_layout && !facts.MissesMostMarkers()) return;
     std::map<std::string, const FrameDetections*> by_name;
     for (const DatabaseImage& image : images) {
       by_name[image.detections.image_name] = &image.detections;
     }
-    ClipFacts& facts = check_.facts;
-    LogInfo("looking for misprinted markers in {} frames", clip.frames.size());
-    facts.contradictions = DescribeFaults(FindPrintFaults(clip.frames, by_name, layout, detection),
-                                          static_cast<int>(facts.num_frames_of_id.size()),
-                                          static_cast<int>(clip.frames.size()));
+    LogInfo("looking for mirrored and inverted markers in {} frames", clip.frames.size());
+    PrintFaults faults = FindPrintFaults(clip.frames, by_name, layout, detection);
+    const std::size_t num_seen = facts.num_frames_of_id.size();
+    if (facts.MissesMostMarkers() && faults.mirrored.size() > std::max(kFewMarkers, num_seen)) {
+      for (const auto& [marker_id, num_frames] : faults.mirrored) {
+        facts.ids_mirrored.push_back(marker_id);
+      }
+      faults.mirrored.clear();  // the picture is, and not the prints
+    }
+    if (!options_.proposes_layout) return;
+    facts.contradictions =
+        DescribeFaults(faults, static_cast<int>(num_seen), static_cast<int>(clip.frames.size()));
   }
 
   void Propose(const std::string& database_path, const Layout& layout) {

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,7 +49,15 @@ struct ClipFacts {
   std::vector<int> ids_never_seen;      // of the layout
   std::vector<int> ids_not_in_layout;   // seen too often to be misread
   std::vector<int> ids_read_rarely;     // probably misread: not in the layout, or without one any
+  // Found only in mirrored frames, if these show more markers than the frames themselves.
+  std::vector<int> ids_mirrored;
   bool has_layout = false;
+
+  // Whether the clip hardly shows what it should.
+  bool MissesMostMarkers() const {
+    const std::size_t num_seen = num_frames_of_id.size();
+    return num_seen == 0 || (has_layout && ids_never_seen.size() > 3 * num_seen);
+  }
 
   Statistics side_px;
   // Medians over the markers; nothing where no side could be measured.

@@ -19,6 +19,7 @@ class Judge {
 
   Verdict Take() {
     JudgeDictionary();
+    JudgeMirroring();
     JudgeIds();
     JudgeSize();
     JudgeLight();
@@ -45,9 +46,24 @@ class Judge {
     }
   }
 
+  void JudgeMirroring() {
+    if (facts_.ids_mirrored.empty()) return;
+    reasons_.Bad(fmt::format(
+        "{} markers are found only if the picture is mirrored: the picture is, as that of a "
+        "phone's front camera: switch mirroring off, or turn it back (ffmpeg -i clip.mp4 -vf hflip "
+        "turned.mp4)",
+        facts_.ids_mirrored.size()));
+  }
+
   void JudgeIds() {
     if (facts_.num_frames_of_id.empty()) return;
-    if (!facts_.ids_never_seen.empty()) {
+    const std::size_t num_missing = facts_.ids_never_seen.size();
+    if (facts_.MissesMostMarkers() && facts_.ids_mirrored.empty()) {
+      reasons_.Bad(fmt::format(
+          "{} of {} markers of the layout are never seen: the layout or the dictionary does not "
+          "belong to these pictures: give those of this object, or film all of it",
+          num_missing, num_missing + facts_.num_frames_of_id.size()));
+    } else if (num_missing > 0) {
       reasons_.Check(fmt::format("never seen: {}: film them, or remove them from the layout",
                                  IdRanges(facts_.ids_never_seen)));
     }

@@ -72,6 +72,15 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) {
          facts->ids_never_seen = {21, 22, 23, 25};
        }},
+      {"61 of 81 markers of the layout are never seen: the layout or the dictionary",
+       ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         for (int id = 20; id < 81; ++id) facts->ids_never_seen.push_back(id);
+       }},
+      {"25 markers are found only if the picture is mirrored", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         for (int id = 20; id < 45; ++id) facts->ids_mirrored.push_back(id);
+       }},
       {"seen in fewer than 3 of 40 frames: 7", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->num_frames_of_id[7] = 2; }},
       {"not in the layout: 99", ReportStatus::kCheck,

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <gmock/gmock.h>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "tests/support/temp_dir.h"
@@ -49,6 +50,32 @@ TEST_F(ClipCheckerTest, PicturesWithoutMarkersAreABadClip) {
       RunVelamap({"clip_checker", "--image_path", (dir_.path() / "blank").string()});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: bad"), HasSubstr("no marker is seen")));
+}
+
+TEST_F(ClipCheckerTest, AMirroredPictureIsNamed) {
+  fs::create_directory(dir_.path() / "mirrored");
+  for (const char* name : {"cam0_00", "cam0_01", "cam0_02"}) {
+    cv::Mat picture = cv::imread(kCube + "images/" + name + ".jpg");
+    ASSERT_FALSE(picture.empty()) << name;
+    cv::flip(picture, picture, 1);
+    cv::imwrite((dir_.path() / "mirrored" / name).string() + ".png", picture);
+  }
+  const ProgramRun run =
+      RunVelamap({"clip_checker", "--image_path", (dir_.path() / "mirrored").string(),
+                  "--layout_path", kCube + "layout.yml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: bad"), HasSubstr("if the picture is mirrored"),
+                             HasSubstr("markers_seen: 0\n"), HasSubstr("ids_never_seen: 0-299\n")));
+}
+
+TEST_F(ClipCheckerTest, TheLayoutOfAnotherObjectIsBad) {
+  const std::string sample = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/";
+  const ProgramRun run = RunVelamap({"clip_checker", "--image_path", sample + "stylus/images",
+                                     "--layout_path", sample + "sail/layout.yml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: bad"),
+                             HasSubstr("the layout or the dictionary does not belong to these"),
+                             Not(HasSubstr("mirrored"))));
 }
 
 TEST_F(ClipCheckerTest, WhatIsNoClipIsAnInputError) {
