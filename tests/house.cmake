@@ -98,7 +98,7 @@ house_folder(exporters/freeform PUBLIC
 house_folder(exporters/compare PUBLIC
   comparison comparison_ply comparison_sigma mesh_distance section_comparison shape_comparison)
 house_folder(exporters/report PUBLIC
-  html_page report_assets report_data report_sail report_writer verdict)
+  camera_key_numbers html_page report_assets report_data report_sail report_writer verdict)
 house_folder(exporters/comparison_page PUBLIC
   comparison_page)
 house_folder(exporters/calibration PUBLIC

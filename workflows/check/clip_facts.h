@@ -10,6 +10,7 @@
 
 #include "importer/base/statistics.h"
 #include "reconstruct/camera/camera_steadiness.h"
+#include "reconstruct/model/calibration_evidence.h"
 
 namespace velamap {
 
@@ -28,6 +29,7 @@ struct ClipPrecision {
   SteadinessVerdict steadiness;  // of the camera
   std::vector<std::string> warnings;
   std::vector<std::string> markers_left_out;  // id and reason of those that contradict the layout
+  CalibrationEvidence calibration;
 };
 
 struct ClipFacts {

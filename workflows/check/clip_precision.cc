@@ -65,6 +65,7 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
   precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));
+  precision.calibration = summary.uncertainty.calibration;
   precision.warnings = summary.warnings;
   if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
     precision.warnings.push_back(std::move(doubt));

@@ -1,8 +1,13 @@
 #include "workflows/check/clip_verdict.h"
 
+#include <algorithm>
+#include <optional>
+
 #include <fmt/format.h>
 
+#include "exporters/report/camera_key_numbers.h"
 #include "importer/text/id_ranges.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {
@@ -138,12 +143,16 @@ class Judge {
   void JudgePrecision() {
     if (!facts_.precision) {
       if (!facts_.no_precision_because.empty() && !facts_.num_frames_of_id.empty()) {
-        reasons_.Bad("no shape can be reconstructed from these frames: " +
-                     facts_.no_precision_because);
+        reasons_.Bad(
+            fmt::format("no shape can be reconstructed from these frames: {}; the calibration may "
+                        "be of another "
+                        "camera, lens mode or zoom: check it, too",
+                        facts_.no_precision_because));
       }
       return;
     }
     const ClipPrecision& precision = *facts_.precision;
+    JudgeCalibration(precision);
     const std::string text =
         fmt::format("the camera moves {:.0f} degrees around the object", precision.parallax_deg);
     const std::string remedy = "move sideways by a third of the distance or more";
@@ -157,6 +166,31 @@ class Judge {
     }
     for (const std::string& warning : precision.warnings) reasons_.Check(warning);
     JudgeSteadiness(precision.steadiness);
+  }
+
+  // A wrong calibration leaves few markers and images that agree, whose residuals say little.
+  void JudgeCalibration(const ClipPrecision& precision) {
+    constexpr int kManyMarkers = 8;
+    const auto num_seen = static_cast<int>(
+        std::count_if(facts_.num_frames_of_id.begin(), facts_.num_frames_of_id.end(),
+                      [](const auto& id_and_num) { return id_and_num.second >= kRarelySeen; }));
+    const int num_frames = facts_.num_frames_read - facts_.num_frames_with_few_markers;
+    if (num_seen >= kManyMarkers &&
+        (2 * precision.num_markers < num_seen || 2 * precision.num_images < num_frames)) {
+      reasons_.Bad(fmt::format(
+          "only {} of {} markers in {} of {} frames fit together: the calibration does not belong "
+          "to these images (another camera, lens mode or zoom), or the surface moved: calibrate "
+          "this camera as it filmed (velamap camera_calibrator)",
+          precision.num_markers, num_seen, precision.num_images, num_frames));
+      return;
+    }
+    AdjustmentUncertainty uncertainty;
+    uncertainty.calibration = precision.calibration;
+    const std::optional<KeyNumber> number = CalibrationNumber(&uncertainty);
+    if (!number) return;
+    if (number->status == ReportStatus::kBad || number->status == ReportStatus::kCheck) {
+      reasons_.Add(number->status, number->advice);
+    }
   }
 
   void JudgeSteadiness(const SteadinessVerdict& steadiness) {

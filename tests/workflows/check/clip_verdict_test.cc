@@ -24,7 +24,7 @@ ClipFacts GoodClip() {
   facts.white = 210;
   facts.blur_px = 0.8;
   facts.motion_px = 1.0;
-  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}, {}};
+  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}, {}, {}};
   return facts;
 }
 
@@ -103,6 +103,18 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) { facts->precision->parallax_deg = 5; }},
       {"contradicts the layout: marker 4", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->markers_left_out = {"marker 4: out of line"}; }},
+      {"the calibration does not belong to these images", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         CalibrationEvidence& evidence = facts->precision->calibration;
+         evidence.num_changes = 4;
+         evidence.chi_squared = 1e4;
+         evidence.systematic_px = 0.3;
+         evidence.shape_change_in_sigmas = 20;
+       }},
+      {"only 9 of 20 markers in 40 of 40 frames fit together: the calibration", ReportStatus::kBad,
+       [](ClipFacts* facts) { facts->precision->num_markers = 9; }},
+      {"only 20 of 20 markers in 13 of 40 frames fit together", ReportStatus::kBad,
+       [](ClipFacts* facts) { facts->precision->num_images = 13; }},
       {"from these frames: because", ReportStatus::kBad, [](ClipFacts* facts) {
          facts->precision.reset();
          facts->no_precision_because = "because";
