@@ -123,6 +123,7 @@ class Checker {
     facts.width_px = clip.frames[0].gray.cols;
     facts.height_px = clip.frames[0].gray.rows;
     facts.has_layout = options_.layout && options_.layout->HasMarkers();
+    facts.has_camera = options_.camera.has_value();
     ArucoDetectionOptions detection = options_.detection;
     const Layout layout = options_.layout ? *options_.layout : FindLayout(clip, &detection, &facts);
     facts.dictionary = layout.dictionary;

@@ -68,6 +68,7 @@ struct ClipFacts {
   std::vector<ClipStretch> good_stretches;   // videos
   std::optional<ClipPrecision> precision;
   std::string no_precision_because;
+  bool has_camera = false;
 
   // With a proposed layout: markers that are there twice or badly printed, and where the layout is
   // wrong, one line each.
