@@ -46,8 +46,8 @@ std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
   const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
   if (weak != warnings.end()) return *weak;
   return "the camera that was found does not fit all pictures: film from more directions, with "
-         "markers tilted and everywhere in the picture, or give a calibration (--camera_path; "
-         "velamap camera_calibrator makes one)";
+         "markers tilted and everywhere in the picture, or give a calibration, which velamap "
+         "camera_calibrator makes";
 }
 
 }  // namespace
