@@ -96,7 +96,6 @@ double MaxCornerErrorPx(const MarkerQuad& found, const PlacedMarkerInCam& marker
   return MaxCornerShift(found.corners_px, true_px);
 }
 
-// OpenCV keeps the largest of close outlines before it reads the codes, which is that of the paper.
 // As in a small picture of few colours, whose dots imitate the others.
 TEST(SearchMarkers, DotsTooSmallForACodeTakeNoTime) {
   cv::Mat gray(270, 480, CV_8UC1, cv::Scalar(200));
@@ -113,6 +112,7 @@ TEST(SearchMarkers, DotsTooSmallForACodeTakeNoTime) {
   EXPECT_LT(ProcessCpuSeconds() - begin_s, kMaxCpu_s);
 }
 
+// OpenCV keeps the largest of close outlines before it reads the codes, which is that of the paper.
 TEST(SearchMarkers, TheEdgeOfNarrowPaperOnADarkGroundHidesNoMarker) {
   std::mt19937 random(TestSeed());
   const auto between = [&](double low, double high) {
