@@ -140,17 +140,26 @@ class Judge {
     }
   }
 
-  void JudgePrecision() {
-    if (!facts_.precision) {
-      if (!facts_.no_precision_because.empty() && !facts_.num_frames_of_id.empty()) {
-        reasons_.Bad(
-            fmt::format("no shape can be reconstructed from these frames: {}; the calibration may "
-                        "be of another "
-                        "camera, lens mode or zoom: check it, too",
-                        facts_.no_precision_because));
-      }
+  // A clip from one place looks as good as any other in each of its frames.
+  void JudgeWithoutPrecision() {
+    if (facts_.num_frames_of_id.empty()) return;
+    if (!facts_.no_precision_because.empty()) {
+      reasons_.Bad(fmt::format(
+          "no shape can be reconstructed from these frames: {}; the calibration may be of another "
+          "camera, lens mode or zoom: check it, too",
+          facts_.no_precision_because));
       return;
     }
+    reasons_.Check(fmt::format(
+        "depth is not checked, for lack of {}: see for yourself that the camera moves sideways by "
+        "a third of the distance or more, or give {}",
+        facts_.has_camera ? "the markers' sizes" : "a calibration",
+        facts_.has_camera ? "--layout_path, or --dictionary and --marker_length"
+                          : "--camera_path"));
+  }
+
+  void JudgePrecision() {
+    if (!facts_.precision) return JudgeWithoutPrecision();
     const ClipPrecision& precision = *facts_.precision;
     JudgeCalibration(precision);
     const std::string text =
