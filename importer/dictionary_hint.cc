@@ -4,8 +4,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,11 @@ namespace velamap {
 namespace {
 
 constexpr int kMaxNumSamples = 12;
+// Over many pictures, chance finds a few markers of any dictionary.
 constexpr int kMinNumMarkers = 2;
+constexpr double kMinMarkersPerImage = 0.5;
+// Of the detections that may be false ones with ids beyond a smaller dictionary of the family.
+constexpr double kMaxShareBeyond = 0.05;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
 constexpr std::chrono::seconds kTalkInterval{1};
@@ -44,10 +49,32 @@ std::string SmallestOfFamily(const std::string& family, int max_id) {
 }
 
 struct Found {
-  std::set<int> ids;
-  int num_markers = 0;
+  std::map<int, int> num_of_id;
 
-  int MaxId() const { return ids.empty() ? -1 : *ids.rbegin(); }
+  int NumUpTo(int max_id) const {
+    int num = 0;
+    for (const auto& [id, num_markers] : num_of_id) num += id <= max_id ? num_markers : 0;
+    return num;
+  }
+  int NumMarkers() const { return NumUpTo(std::numeric_limits<int>::max()); }
+
+  // The largest id, but for a few far beyond all others; -1 without any. Prints number their
+  // markers without large gaps.
+  int MaxId() const {
+    constexpr double kGapFactor = 1.5;
+    constexpr int kLeastGap = 10;
+    const double least = (1 - kMaxShareBeyond) * NumMarkers();
+    for (auto it = num_of_id.begin(); it != num_of_id.end(); ++it) {
+      const auto next = std::next(it);
+      if (next == num_of_id.end()) return it->first;
+      const bool is_gap = next->first > kGapFactor * it->first + kLeastGap;
+      if (is_gap && NumUpTo(it->first) >= least) return it->first;
+    }
+    return -1;
+  }
+  int NumIdsUpTo(int max_id) const {
+    return static_cast<int>(std::distance(num_of_id.begin(), num_of_id.upper_bound(max_id)));
+  }
 };
 
 // Every sixteenth pattern of 4x4 bits, in one of its rotations, is a code of DICT_4X4_1000, so
@@ -55,9 +82,10 @@ struct Found {
 // repeats one. Other families have too few codes for their bits to be hit by chance.
 bool MayBeChance(const std::string& family, const Found& found) {
   if (family != "DICT_4X4_1000") return false;
-  const double share = SizeWithId(family, found.MaxId()) / 1000.0;
-  const bool are_first_ids = std::pow(share, static_cast<double>(found.ids.size())) < kMaxChance;
-  return !are_first_ids && found.num_markers < 2 * static_cast<int>(found.ids.size());
+  const int max_id = found.MaxId(), num_ids = found.NumIdsUpTo(max_id);
+  const double share = SizeWithId(family, max_id) / 1000.0;
+  const bool are_first_ids = std::pow(share, num_ids) < kMaxChance;
+  return !are_first_ids && found.NumUpTo(max_id) < 2 * num_ids;
 }
 
 }  // namespace
@@ -84,19 +112,19 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
         strict.inverted = inverted;
         Found& found = found_by_choice[{family, inverted}];
         for (const MarkerDetection& marker : DetectMarkers(gray, dictionary, border_bits, strict)) {
-          ++found.num_markers;
-          found.ids.insert(marker.marker_id);
+          ++found.num_of_id[marker.marker_id];
         }
-        convinced |= found.num_markers >= kConvincingNumMarkers && !MayBeChance(family, found);
+        convinced |= found.NumMarkers() >= kConvincingNumMarkers && !MayBeChance(family, found);
       }
     }
   }
   std::vector<DictionaryHint> hints;
   for (const auto& [choice, found] : found_by_choice) {
     const std::string& family = choice.first;
-    if (found.num_markers < kMinNumMarkers || MayBeChance(family, found)) continue;
-    hints.push_back(
-        {SmallestOfFamily(family, found.MaxId()), choice.second, found.num_markers, num_images});
+    const int max_id = found.MaxId(), num_markers = found.NumUpTo(max_id);
+    if (num_markers < std::max<double>(kMinNumMarkers, kMinMarkersPerImage * num_images)) continue;
+    if (MayBeChance(family, found)) continue;
+    hints.push_back({SmallestOfFamily(family, max_id), choice.second, num_markers, num_images});
   }
   std::stable_sort(hints.begin(), hints.end(),
                    [](const DictionaryHint& a, const DictionaryHint& b) {
@@ -113,7 +141,7 @@ std::string DescribeHints(const std::vector<DictionaryHint>& hints) {
     text += fmt::format("--dictionary {} --ArucoDetection.inverted {} ({} markers in {} images)",
                         hint.dictionary, hint.inverted ? 1 : 0, hint.num_markers, hint.num_images);
   }
-  return text;
+  return text.empty() ? text : text + "; with a layout file, change its key `dictionary`";
 }
 
 void ImageSample::Add(int idx, const cv::Mat& gray) {

@@ -13,20 +13,22 @@
 namespace velamap {
 
 struct DictionaryHint {
-  std::string dictionary;  // the smallest of its family that contains all detected ids
+  std::string dictionary;  // the smallest of its family that contains nearly all detected ids
   bool inverted = false;
-  int num_markers = 0;  // detected in the images
+  int num_markers = 0;  // of these ids, detected in the images
   int num_images = 0;   // searched
 };
 
 // Tries all predefined dictionaries in both polarities, without error correction. Returns at most
-// three, by descending number of detections: those with two or more detections that are unlikely to
-// be chance. Leaves out the remaining images once a dictionary has detected many markers.
+// three, by descending number of detections: those with two or more detections, and at least one in
+// two images, that are unlikely to be chance. Leaves out the remaining images once a dictionary has
+// detected many markers.
 std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
                                                 int border_bits,
                                                 const ArucoDetectionOptions& options);
 
-// "--dictionary DICT_4X4_50 --ArucoDetection.inverted 1 (20 markers in 3 images), or ...".
+// "--dictionary DICT_4X4_50 --ArucoDetection.inverted 1 (20 markers in 3 images), or ...", and what
+// to do with a layout file.
 std::string DescribeHints(const std::vector<DictionaryHint>& hints);
 
 // Keeps at most twelve grey images, spread evenly over a stream of unknown length.

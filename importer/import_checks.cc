@@ -218,7 +218,7 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
   if (report.num_markers > 0) return;
   if (report.num_rejected > 0) ThrowAllRejected(options, report);
   throw DataError(fmt::format(
-      "{}: no marker of {}{} found in {} frames; no predefined dictionary finds any: check focus, "
+      "{}: no marker of {}{} found in {} frames; no predefined dictionary finds more: check focus, "
       "size and border of the markers",
       options.image_path, dictionary_name, options.detection.inverted ? " (inverted)" : "",
       report.num_frames_read));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "importer/dictionary_hint.h"
 #include "tests/importer/marker_builders.h"
@@ -130,6 +130,30 @@ TEST(SuggestDictionaries, CodesOfFewBitsAreNoEvidenceOnTheirOwn) {
   const std::vector<DictionaryHint> hints = SuggestDictionaries({gray, gray}, 1, {});
   ASSERT_EQ(hints.size(), 1u);
   EXPECT_EQ(hints[0].dictionary, "DICT_4X4_1000");
+}
+
+TEST(SuggestDictionaries, AFalseIdDoesNotAskForALargerDictionary) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_1000");
+  std::vector<DrawnMarker> drawn = {{940, 40, 440, 60}};
+  for (int i = 0; i < 24; ++i) {
+    drawn.push_back({100 + i, 40 + 120 * (i % 8), 50 + 130 * (i / 8), 60});
+  }
+  const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {1040, 560}, drawn));
+  const std::vector<DictionaryHint> hints = SuggestDictionaries({gray}, 1, {});
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_EQ(hints[0].dictionary, "DICT_4X4_250");
+  EXPECT_EQ(hints[0].num_markers, 24);
+  EXPECT_THAT(DescribeHints(hints), testing::HasSubstr("change its key `dictionary`"));
+}
+
+TEST(SuggestDictionaries, TwoMarkersInTwelvePicturesAreNoEvidence) {
+  const Dictionary dictionary = LoadDictionary("DICT_6X6_100");
+  const cv::Mat shown =
+      Gray(DrawMarkers(dictionary.aruco, {480, 200}, {{3, 40, 50, 84}, {72, 180, 50, 84}}));
+  std::vector<cv::Mat> images(12, cv::Mat(200, 480, CV_8UC1, cv::Scalar(255)));
+  images[5] = shown;
+  EXPECT_TRUE(SuggestDictionaries(images, 1, {}).empty());
+  EXPECT_EQ(SuggestDictionaries({shown}, 1, {}).size(), 1u);
 }
 
 TEST(ImageSample, SpreadsOverAStreamOfAnyLength) {
