@@ -94,7 +94,13 @@ class Judge {
     if (side_px < kBadSidePx) {
       reasons_.Bad(text + ": " + remedy);
     } else if (side_px < kGoodSidePx) {
-      reasons_.Check(text + ": the size is known only to a few tenths of a percent; " + remedy);
+      // The reconstruction of these frames knows better than the rule of thumb.
+      const std::string size =
+          facts_.precision
+              ? fmt::format("the size is known to {:.2f} % (1 sigma) from these frames",
+                            100 * facts_.precision->scale_sigma)
+              : "the size may be known only to a few tenths of a percent";
+      reasons_.Check(fmt::format("{}: {}; {}", text, size, remedy));
     }
   }
 

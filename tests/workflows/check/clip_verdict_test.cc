@@ -135,6 +135,16 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
   }
 }
 
+TEST(ClipVerdict, OfTheSizeItSaysWhatTheReconstructionSays) {
+  ClipFacts facts = GoodClip();
+  facts.side_px = ComputeStatistics({16});
+  facts.precision->scale_sigma = 1.19e-3;
+  EXPECT_THAT(JudgeClip(facts).reasons,
+              ElementsAre(Field(&VerdictReason::text, HasSubstr("size is known to 0.12 %"))));
+  facts.precision.reset();
+  EXPECT_THAT(JudgeClip(facts).reasons.front().text, HasSubstr("a few tenths of a percent"));
+}
+
 TEST(ClipVerdict, WhatIsBadComesFirst) {
   ClipFacts facts = GoodClip();
   facts.white = 254;
