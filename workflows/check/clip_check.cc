@@ -110,9 +110,8 @@ class Checker {
   ClipCheck Run() {
     ClipFacts& facts = check_.facts;
     facts.num_frames = OpenFrameSource(options_.image_path, options_.video)->NumFrames();
-    // Rounded down, so that a clip with hardly more frames than asked for keeps them all.
-    VideoOptions video = options_.video;
-    video.frame_step *= std::max(1, facts.num_frames / options_.num_frames);
+    const VideoOptions video =
+        SpreadOverClip(options_.video, facts.num_frames, options_.num_frames);
     const int num_looked_at = facts.num_frames * options_.video.frame_step / video.frame_step;
     const ClipFrames clip = ReadClipFrames(
         options_.image_path, SpreadOverClip(video, num_looked_at, kNumFramesWithPixels),

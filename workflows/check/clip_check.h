@@ -25,7 +25,7 @@ struct ClipCheckOptions {
   bool proposes_layout = false;
   ArucoDetectionOptions detection;
   VideoOptions video;
-  int num_frames = 40;  // to look at, of a video
+  int num_frames = 40;  // to look at, of a video, at most
   int num_threads = 0;  // 0: one per core
 };
 

@@ -51,7 +51,8 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
              "layout file with the parts, lines and lengths that the clip shows, or the "
              "given layout corrected, which takes a minute; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
-          "number of frames of a video to look at", FromTo(5, 1000)}}},
+          "largest number of frames of a video to look at, at equal distances over all of it",
+          FromTo(5, 1000)}}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->check.detection),
        DescribeOptions(&options->check.video),
