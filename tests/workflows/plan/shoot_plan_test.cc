@@ -194,7 +194,7 @@ TEST(JudgePlanTest, GoingCloserIsNoRemedyWhereMarkersFillThePicture) {
   plan.surface = PlannedSail();
   plan.camera = LinearCamera();
   plan.along_path = {1.0, 0.7, 18, 18};
-  plan.path = {4, 80, 1, 10};
+  plan.path = {3, 80, 1, 10};
   plan.shutters = {{1, 100, 0.01}};
   plan.variants = {{"plan", plan.path, std::nullopt, "two views needed"}};
   std::string texts;
