@@ -146,22 +146,12 @@ class Judge {
     }
   }
 
-  // A clip from one place looks as good as any other in each of its frames.
   void JudgeWithoutPrecision() {
-    if (facts_.num_frames_of_id.empty()) return;
-    if (!facts_.no_precision_because.empty()) {
-      reasons_.Bad(fmt::format(
-          "no shape can be reconstructed from these frames: {}; the calibration may be of another "
-          "camera, lens mode or zoom: check it, too",
-          facts_.no_precision_because));
-      return;
-    }
-    reasons_.Check(fmt::format(
-        "depth is not checked, for lack of {}: see for yourself that the camera moves sideways by "
-        "a third of the distance or more, or give {}",
-        facts_.has_camera ? "the markers' sizes" : "a calibration",
-        facts_.has_camera ? "--layout_path, or --dictionary and --marker_length"
-                          : "--camera_path"));
+    if (facts_.num_frames_of_id.empty() || facts_.no_precision_because.empty()) return;
+    reasons_.Bad(fmt::format(
+        "no shape can be reconstructed from these frames: {}; the calibration may be of another "
+        "camera, lens mode or zoom: check it, too",
+        facts_.no_precision_because));
   }
 
   void JudgePrecision() {

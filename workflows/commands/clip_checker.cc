@@ -121,8 +121,22 @@ void PrintPrecision(const ClipPrecision& precision, std::ostream& out) {
   WriteFormatted(out, "parallax_deg: {:.0f}\n", precision.parallax_deg);
 }
 
+// A clip from one place looks as good as any other in each of its frames.
+void PrintWhatIsNotChecked(const ClipFacts& facts, std::ostream& out) {
+  if (facts.precision || facts.num_frames_of_id.empty() || !facts.no_precision_because.empty()) {
+    return;
+  }
+  WriteFormatted(
+      out,
+      "not_checked: depth, for lack of {}: see that the camera moves sideways by a "
+      "third of the distance or more, or give {}\n",
+      facts.has_camera ? "the markers' sizes" : "a calibration",
+      facts.has_camera ? "--layout_path, or --dictionary and --marker_length" : "--camera_path");
+}
+
 void Print(const ClipFacts& facts, std::ostream& out) {
   PrintVerdict(JudgeClip(facts), out);
+  PrintWhatIsNotChecked(facts, out);
   WriteFormatted(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
                  facts.num_frames, facts.width_px, facts.height_px);
   if (facts.dictionary.empty()) return;

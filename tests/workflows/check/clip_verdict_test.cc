@@ -103,13 +103,6 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) { facts->precision->parallax_deg = 5; }},
       {"contradicts the layout: marker 4", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->markers_left_out = {"marker 4: out of line"}; }},
-      {"depth is not checked, for lack of a calibration", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->precision.reset(); }},
-      {"or give --layout_path, or --dictionary and --marker_length", ReportStatus::kCheck,
-       [](ClipFacts* facts) {
-         facts->precision.reset();
-         facts->has_camera = true;
-       }},
       {"the calibration does not belong to these images", ReportStatus::kBad,
        [](ClipFacts* facts) {
          CalibrationEvidence& evidence = facts->precision->calibration;

@@ -30,9 +30,10 @@ TEST_F(ClipCheckerTest, SaysWhatTheCubesPhotographsAreWorth) {
                                      "--layout_path", kCube + "layout.yml", "--camera_path",
                                      kCube + "camera.yml", "--output_path", png});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: "), HasSubstr("ids_never_seen: "),
-                             HasSubstr("side_px: median "), HasSubstr("blur_px: "),
-                             HasSubstr("precision: "), HasSubstr("parallax_deg: ")));
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("verdict: "), HasSubstr("ids_never_seen: "),
+                    HasSubstr("side_px: median "), HasSubstr("blur_px: "), HasSubstr("precision: "),
+                    HasSubstr("parallax_deg: "), Not(HasSubstr("not_checked: "))));
   EXPECT_FALSE(cv::imread(png).empty());
 }
 
@@ -40,6 +41,7 @@ TEST_F(ClipCheckerTest, FindsTheDictionaryByItself) {
   const ProgramRun run = RunVelamap({"clip_checker", "--image_path", kCube + "images"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_"), HasSubstr("(found: "),
+                             HasSubstr("not_checked: depth, for lack of a calibration"),
                              Not(HasSubstr("precision: "))));
 }
 
