@@ -17,7 +17,23 @@ constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
 // A single parameter is named if it explains at least this share of what all of them explain.
 constexpr double kDecisiveShare = 0.7;
 
-// The parameter that explains most, and the options that refine it.
+// Nobody gave a calibration that could be wrong: the pictures do not determine the camera, for the
+// reason that a warning names where the geometry is weak.
+std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
+  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
+  if (weak != warnings.end()) return *weak;
+  return "the camera that was found does not fit all pictures: film from more directions, with "
+         "markers tilted and everywhere in the picture, or give a calibration, which velamap "
+         "camera_calibrator makes";
+}
+
+}  // namespace
+
+ReportStatus LowIsGood(double value, double good, double bad) {
+  if (value <= good) return ReportStatus::kGood;
+  return value <= bad ? ReportStatus::kCheck : ReportStatus::kBad;
+}
+
 std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
   const bool is_focal = evidence.focal_share >= std::max(kDecisiveShare, evidence.distortion_share);
   const bool is_distortion = !is_focal && evidence.distortion_share >= kDecisiveShare;
@@ -38,23 +54,6 @@ std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
       "camera_calibrator), or refine it: {}",
       StatusOf(evidence) == ReportStatus::kBad ? "does not belong to" : "does not quite fit", what,
       command);
-}
-
-// Nobody gave a calibration that could be wrong: the pictures do not determine the camera, for the
-// reason that a warning names where the geometry is weak.
-std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
-  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
-  if (weak != warnings.end()) return *weak;
-  return "the camera that was found does not fit all pictures: film from more directions, with "
-         "markers tilted and everywhere in the picture, or give a calibration, which velamap "
-         "camera_calibrator makes";
-}
-
-}  // namespace
-
-ReportStatus LowIsGood(double value, double good, double bad) {
-  if (value <= good) return ReportStatus::kGood;
-  return value <= bad ? ReportStatus::kCheck : ReportStatus::kBad;
 }
 
 ReportStatus StatusOf(const CalibrationEvidence& evidence) {

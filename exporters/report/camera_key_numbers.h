@@ -17,6 +17,9 @@ ReportStatus LowIsGood(double value, double good, double bad);
 // where it was not tested.
 ReportStatus StatusOf(const CalibrationEvidence& evidence);
 
+// Names the parameter that explains most, and the options that refine it.
+std::string CalibrationAdvice(const CalibrationEvidence& evidence);
+
 // Whether another calibration would explain the residuals. None without the marker-aware
 // adjustment, which tests it. Where no calibration was given, the advice is about the pictures.
 std::optional<KeyNumber> CalibrationNumber(const ReportInput& input);

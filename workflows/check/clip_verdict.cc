@@ -189,12 +189,9 @@ class Judge {
           precision.num_markers, num_seen, precision.num_images, num_frames));
       return;
     }
-    AdjustmentUncertainty uncertainty;
-    uncertainty.calibration = precision.calibration;
-    const std::optional<KeyNumber> number = CalibrationNumber(&uncertainty);
-    if (!number) return;
-    if (number->status == ReportStatus::kBad || number->status == ReportStatus::kCheck) {
-      reasons_.Add(number->status, number->advice);
+    const ReportStatus status = StatusOf(precision.calibration);
+    if (status == ReportStatus::kBad || status == ReportStatus::kCheck) {
+      reasons_.Add(status, CalibrationAdvice(precision.calibration));
     }
   }
 
