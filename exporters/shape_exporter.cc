@@ -1,5 +1,6 @@
 #include "exporters/shape_exporter.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -18,6 +19,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/replacement.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
@@ -123,12 +125,30 @@ void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choic
   }
 }
 
+std::exception_ptr FirstSurfaceError(const ShapeExportReport& report) {
+  return report.sail.surface_error ? report.sail.surface_error : report.freeform.surface_error;
+}
+
+bool HoldsResult(const fs::path& output) {
+  if (output.empty() || !Exists(output)) return false;
+  return !IsFolder(output) || !FolderEntries(output).empty();
+}
+
 }  // namespace
 
+void ShapeExportReport::ThrowSurfaceErrorBeforeReplacing(
+    const std::vector<fs::path>& outputs) const {
+  const std::exception_ptr error = FirstSurfaceError(*this);
+  if (!error || std::none_of(outputs.begin(), outputs.end(), HoldsResult)) return;
+  LogInfo("no surface, so the earlier result stays as it was");
+  std::rethrow_exception(error);
+}
+
 void ShapeExportReport::ThrowSurfaceError() const {
-  for (const std::exception_ptr& error : {sail.surface_error, freeform.surface_error}) {
-    if (error) std::rethrow_exception(error);
-  }
+  const std::exception_ptr error = FirstSurfaceError(*this);
+  if (!error) return;
+  LogInfo("everything but the surface is written");
+  std::rethrow_exception(error);
 }
 
 ShapeExportReport MeasureShape(const Model& model, const Layout& layout,

@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exporters/datum/known_points.h"
 #include "exporters/freeform/freeform_shape.h"
@@ -50,8 +52,13 @@ struct ShapeExportReport {
   ModelMetrics model_metrics;
   ScaleAudit audit;
 
-  // Throws the first error of a surface (SailShape::surface_error), if there is one. Callers write
-  // everything else first: the shape does not depend on it.
+  // Both throw the first error of a surface (SailShape::surface_error), if there is one. The shape
+  // does not depend on it, so callers ask twice: before they write, and after they have written
+  // everything else but printed nothing.
+  //
+  // The first one throws only where one of the outputs, files or folders, holds an earlier result,
+  // which may have the surface that this one lacks. Empty paths are ignored.
+  void ThrowSurfaceErrorBeforeReplacing(const std::vector<std::filesystem::path>& outputs) const;
   void ThrowSurfaceError() const;
 };
 
@@ -69,7 +76,7 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
 // MeasureShape() with sections and surfaces: all that WriteShape() writes with the same options.
 // Throws InputError also for bad options, among them folders that WriteShape() would refuse. An
 // option of the surface that the size of the part forbids is left to the caller, see
-// ShapeExportReport::ThrowSurfaceError().
+// ShapeExportReport::ThrowSurfaceErrorBeforeReplacing().
 ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
                                const ShapeExporterOptions& options,
                                const AdjustmentUncertainty* uncertainty = nullptr);

@@ -7,7 +7,6 @@
 
 #include "exporters/report/camera_key_numbers.h"
 #include "importer/text/id_ranges.h"
-#include "reconstruct/model/adjustment_uncertainty.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {

@@ -220,6 +220,7 @@ void AdjustAndExport(const AutomaticReconstructorCommandOptions& options,
   exporter.origin = OriginOf(options, summary->adjustment);
   summary->shape =
       ComputeShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
+  summary->shape.ThrowSurfaceErrorBeforeReplacing({paths.Sparse(), paths.Shape(), paths.Report()});
   const ReportInput input = JudgedInput(options, paths, seed, design, *summary);
   summary->verdict = MakeVerdict(input);
   WriteShape(summary->shape, exporter, &summary->verdict);
@@ -260,12 +261,12 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
   AdjustAndExport(options, paths, seed, design.get(), &summary, &clock);
   WriteTimes(clock, paths);
+  summary.shape.ThrowSurfaceError();
   if (options.summary == SummaryFormat::kJson) {
     WriteMetricsJson(SummaryMetrics(summary, paths), std::cout);
   } else {
     PrintSummary(summary, paths, std::cout);
   }
-  summary.shape.ThrowSurfaceError();
 }
 
 }  // namespace

@@ -99,12 +99,13 @@ void Run(const ShapeExporterCommandOptions& options) {
       ReadUncertaintyOf(model, options.paths.input_path);
   const ShapeExportReport report =
       ComputeShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
+  report.ThrowSurfaceErrorBeforeReplacing({options.paths.output_path, options.paths.shape_path});
   const Verdict verdict = Judge(report, layout);
   WriteShape(report, options.exporter, &verdict);
   clock.End("export");
   LogStageTimes(clock);
-  Print(report, verdict, options.paths, std::cout);
   report.ThrowSurfaceError();
+  Print(report, verdict, options.paths, std::cout);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // The main job on real pictures: a workspace from photographs and from a video.
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -165,6 +167,37 @@ TEST_F(AutomaticReconstructorTest, OtherDetectionOptionsNeedANewDatabase) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(NumErrorLines(run.err), 1);
   EXPECT_EQ(ReadFileBytes(workspace() / "shape/shape.csv"), before);
+}
+
+TEST_F(AutomaticReconstructorTest, AWrongSurfaceOptionKeepsTheOldResult) {
+  CopyStylusWorkspace(workspace());
+  const auto result = [this] {
+    std::map<std::string, std::string> bytes;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(workspace())) {
+      const bool is_log = entry.path().extension() == ".log";
+      if (entry.is_regular_file() && !is_log) bytes[entry.path()] = ReadFileBytes(entry.path());
+    }
+    bytes.erase(workspace() / "database.db");  // which stays usable, not equal
+    return bytes;
+  };
+  const std::map<std::string, std::string> before = result();
+  EXPECT_EQ(before.count(workspace() / "shape/freeform.ply"), 1u);
+  for (const char* format : {"text", "json"}) {
+    const ProgramRun run = Run({"--Surface.edge_length", "0.001", "--summary", format});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("error: --Surface.edge_length: 0.001 mm would need"));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(result(), before);
+  }
+  // Where there is no earlier result, everything but the surface is written.
+  for (const char* name : {"shape", "sparse", "report.html"}) fs::remove_all(workspace() / name);
+  const ProgramRun run = Run({"--Surface.edge_length", "0.001"});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(ListFolder(workspace() / "sparse"), ElementsAre("0", "seed"));
+  EXPECT_THAT(ListFolder(workspace() / "shape"), IsSupersetOf({"shape.csv", "shape.json"}));
+  EXPECT_TRUE(fs::exists(workspace() / "report.html"));
 }
 
 TEST_F(AutomaticReconstructorTest, FailureOfColmapKeepsTheOldResult) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -214,19 +215,52 @@ TEST_F(ShapeExporterCommandTest, SurfaceGoesOnToGivenEdges) {
   EXPECT_GT(area({"--Surface.edges_path", path("edges.csv")}), 1.02 * alone);
 }
 
-// The limits of these options follow from the shape, which is written all the same.
+// The limits of these options follow from the shape, which is written all the same, but not shown
+// as a success.
 TEST_F(ShapeExporterCommandTest, ShapeIsWrittenWhateverBecomesOfTheSurface) {
   const auto expect_error = [&](const std::vector<std::string>& more, const std::string& part) {
     const ProgramRun run = Export(more);
     EXPECT_EQ(run.exit_code, 2) << run.err;
     EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_THAT(run.err, HasSubstr("everything but the surface is written"));
     EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
     EXPECT_THAT(ListFolder(path("shape")), IsSupersetOf({"shape.csv", "sections.csv"}));
     std::filesystem::remove_all(path("shape"));
   };
   expect_error({"--Surface.edge_length", "0.001"}, "triangles");
   expect_error({"--Surface.luff_extension", "1e6", "--Surface.head_extension", "1e6"},
                "--Surface.luff_extension: 1e+06 mm, expected at most");
+  std::filesystem::create_directory(path("shape"));  // an empty folder holds no earlier result
+  expect_error({"--Surface.edge_length", "0.001"}, "triangles");
+}
+
+TEST_F(ShapeExporterCommandTest, AWrongSurfaceOptionKeepsTheEarlierResult) {
+  const std::vector<std::string> model = {"--output_path", path("metric")};
+  const ProgramRun first = Export(model);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const auto files = [&] {
+    std::map<std::string, std::string> bytes;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(dir_.path())) {
+      if (entry.is_regular_file()) bytes[entry.path()] = ReadFileBytes(entry.path());
+    }
+    return bytes;
+  };
+  const std::map<std::string, std::string> before = files();
+  EXPECT_EQ(before.count(path("shape/surface.step")), 1u);
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--Surface.luff_extension", "1e6"},
+        std::vector<std::string>{"--Surface.edge_length", "0.001"}}) {
+    std::vector<std::string> more = model;
+    more.insert(more.end(), option.begin(), option.end());
+    const ProgramRun run = Export(more);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("error: " + option[0]));
+    EXPECT_THAT(run.err, HasSubstr("the earlier result stays as it was"));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(files(), before) << option[0];
+  }
 }
 
 TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
