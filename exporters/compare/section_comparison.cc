@@ -64,7 +64,9 @@ void AddDifferences(const Section& section, const Section& reference, bool with_
   }
   add("entry_angle_deg", 1.0, section.entry_angle_deg, reference.entry_angle_deg);
   add("exit_angle_deg", 1.0, section.exit_angle_deg, reference.exit_angle_deg);
-  if (with_twist) add("twist_deg", 1.0, section.twist_deg, reference.twist_deg);
+  if (with_twist && section.twist_deg && reference.twist_deg) {
+    add("twist_deg", 1.0, *section.twist_deg, *reference.twist_deg);
+  }
 }
 
 // Whether two curves of a line run between the same markers.
@@ -73,16 +75,13 @@ bool HaveSameEnds(const Section& a, const Section& b) {
          a.markers.back().marker_id == b.markers.back().marker_id;
 }
 
-// The boom, or the lowest section with its ends, so that chords over different markers are
-// different references; empty for a part without sections.
+// The boom, or the name of the section from which twist counts; empty for a part without both.
 std::string TwistReference(const SectionReport& report, const std::string& part) {
-  const auto is_of_part = [&](const auto& item) { return item.part == part; };
-  const auto rig = std::find_if(report.rigs.begin(), report.rigs.end(), is_of_part);
+  const auto rig = std::find_if(report.rigs.begin(), report.rigs.end(),
+                                [&](const RigNumbers& item) { return item.part == part; });
   if (rig == report.rigs.end()) return "";
   if (rig->twist_reference == "boom") return rig->twist_reference;
-  const Section& lowest = *std::find_if(report.sections.begin(), report.sections.end(), is_of_part);
-  return fmt::format("section {} from {} to {}", lowest.name, lowest.markers.front().marker_id,
-                     lowest.markers.back().marker_id);
+  return rig->reference_section.empty() ? "" : "section " + rig->reference_section;
 }
 
 void AddNotes(const SectionReport& report, const char* whose, std::vector<std::string>* notes) {

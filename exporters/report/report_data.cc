@@ -268,6 +268,7 @@ std::string ReportJson(const ReportInput& input) {
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
   AddList("sections", input.sections, &json);
+  if (!input.section_notes.empty()) json["section_notes"] = input.section_notes;
   if (input.design) {
     json["design"] = {{"name", input.design->name},
                       {"num_markers", input.design->num_markers},

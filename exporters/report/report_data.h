@@ -19,6 +19,7 @@
 //   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
 //                            exit_deg, twist_deg, leech_twist_deg, girth_m with their sigmas,
 //                            profile, profile_in_shape, design
+//   section_notes            what concerns several sections, such as what twist counts from
 //   design                   name, num_markers, distance_mm
 //   rigs                     part, luff_bend_m, luff_sag_m, sheeting_angle_deg with their sigmas
 //   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
@@ -128,6 +129,7 @@ struct ReportInput {
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
+  std::vector<std::string> section_notes = {};
   std::optional<ReportDesign> design = {};
   std::vector<ReportRig> rigs = {};
   std::vector<ReportSurface> surfaces = {};

@@ -91,14 +91,13 @@ Eigen::VectorXd LuffNumbers(const SpaceCurve& luff, const Eigen::Vector3d& aft, 
 }
 
 void SetLuffNumbers(const PartContext& context, const std::optional<MarkerPair>& centerline,
-                    RigNumbers* rig) {
+                    const LineCurve* along_boat, RigNumbers* rig) {
   const MarkerCenters& centers = context.centers;
   const std::vector<int> indices = LuffIndices(context);
-  if (indices.empty()) return;
+  if (indices.empty() || (!centerline && along_boat == nullptr)) return;
   const LineCurve luff = FitLuff(centers, indices);
-  const LineCurve& lowest = context.curves.lines.front();
   const NumbersFunction numbers = [&](const MarkerCenters& moved, int) -> Eigen::VectorXd {
-    const SpaceCurve foot = centerline ? SpaceCurve{} : lowest.Refit(moved);
+    const SpaceCurve foot = centerline ? SpaceCurve{} : along_boat->Refit(moved);
     const Eigen::Vector3d aft =
         centerline ? Eigen::Vector3d(moved.x_m.col(centerline->last_idx) -
                                      moved.x_m.col(centerline->first_idx))
@@ -109,7 +108,7 @@ void SetLuffNumbers(const PartContext& context, const std::optional<MarkerPair>&
   if (centerline) {
     moved.insert({centerline->first_idx, centerline->last_idx});
   } else {
-    moved.insert(lowest.indices.begin(), lowest.indices.end());
+    moved.insert(along_boat->indices.begin(), along_boat->indices.end());
   }
   const Eigen::VectorXd values = numbers(centers, 0);
   const Eigen::MatrixXd gradient =
@@ -125,17 +124,19 @@ void SetLuffNumbers(const PartContext& context, const std::optional<MarkerPair>&
 
 RigNumbers ComputeRigNumbers(const PartContext& context,
                              const std::optional<MarkerPair>& centerline,
-                             const NumbersWithGradient& foot) {
+                             const ReferenceSection& reference, const NumbersWithGradient* foot) {
   RigNumbers rig;
   rig.part = context.part.name;
-  rig.aft_reference = centerline ? "centerline" : "lowest section";
-  SetLuffNumbers(context, centerline, &rig);
-  if (centerline) {
+  rig.reference_section = reference.name;
+  rig.aft_reference = centerline ? "centerline" : reference.Text();
+  SetLuffNumbers(context, centerline,
+                 reference.line_idx ? &context.curves.lines[*reference.line_idx] : nullptr, &rig);
+  if (centerline && foot != nullptr) {
     const NumbersWithGradient ahead = NumbersOfPair(context, *centerline);
     rig.sheeting_angle_deg =
-        Estimate{foot.numbers[kAzimuth] - ahead.numbers[kAzimuth],
+        Estimate{foot->numbers[kAzimuth] - ahead.numbers[kAzimuth],
                  SigmaOfGradient(context.centers,
-                                 foot.gradient.row(kAzimuth) - ahead.gradient.row(kAzimuth))};
+                                 foot->gradient.row(kAzimuth) - ahead.gradient.row(kAzimuth))};
   }
   return rig;
 }

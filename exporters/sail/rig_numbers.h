@@ -9,13 +9,14 @@
 
 #include "exporters/sail/section.h"
 #include "exporters/sail/section_numbers.h"
+#include "exporters/sail/section_twist.h"
 
 namespace velamap {
 
-// `centerline` is directed aft. `foot` holds the azimuth of the boom or, without one, of the lowest
-// section.
+// `centerline` is directed aft. `foot` holds the azimuth of the boom or of the reference section;
+// null without both.
 RigNumbers ComputeRigNumbers(const PartContext& context,
                              const std::optional<MarkerPair>& centerline,
-                             const NumbersWithGradient& foot);
+                             const ReferenceSection& reference, const NumbersWithGradient* foot);
 
 }  // namespace velamap

@@ -10,6 +10,7 @@
 #include "exporters/sail/rig_numbers.h"
 #include "exporters/sail/section_lines.h"
 #include "exporters/sail/section_numbers.h"
+#include "exporters/sail/section_twist.h"
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
@@ -138,13 +139,6 @@ void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sectio
   }
 }
 
-// A number of a section minus the reference's.
-Estimate Difference(SectionNumber number, const MarkerCenters& centers,
-                    const NumbersWithGradient& own, const NumbersWithGradient& reference) {
-  return {own.numbers[number] - reference.numbers[number],
-          SigmaOfGradient(centers, own.gradient.row(number) - reference.gradient.row(number))};
-}
-
 void AddPartSections(const PartContext& context, const std::optional<MarkerPair>& boom,
                      const std::optional<MarkerPair>& centerline, const std::string& up_reference,
                      const SectionOptions& options, SectionReport* report) {
@@ -178,16 +172,19 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.back().is_line = false;
   }
   AddMissingEndsOfHeights(lines.size(), &sections);
-  // The first section is the lowest line.
-  const NumbersWithGradient reference = boom ? NumbersOfPair(context, *boom) : numbers.front();
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    sections[i].twist_deg = Difference(kAzimuth, context.centers, numbers[i], reference);
-    sections[i].leech_twist_deg =
-        Difference(kLeechAzimuth, context.centers, numbers[i], numbers.front());
-  }
-  report->rigs.push_back(ComputeRigNumbers(context, centerline, reference));
-  report->rigs.back().twist_reference = boom ? kBoomPart : "lowest section";
+  const ReferenceSection reference = ChooseReferenceSection(context, sections);
+  std::optional<NumbersWithGradient> of_boom;
+  if (boom) of_boom = NumbersOfPair(context, *boom);
+  SetTwists(context, numbers, reference, of_boom ? &*of_boom : nullptr, &sections);
+  const NumbersWithGradient* of_section =
+      reference.line_idx ? &numbers[*reference.line_idx] : nullptr;
+  report->rigs.push_back(
+      ComputeRigNumbers(context, centerline, reference, of_boom ? &*of_boom : of_section));
+  report->rigs.back().twist_reference = boom ? kBoomPart : reference.Text();
   report->rigs.back().up_reference = up_reference;
+  const std::string note =
+      ReferenceNote(reference, context.part.name, boom.has_value(), centerline.has_value());
+  if (!note.empty()) report->notes.push_back(note);
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return a.height_m < b.height_m; });
   for (Section& section : sections) report->sections.push_back(std::move(section));
@@ -300,7 +297,7 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
       if (is_first) boom = FindPair(kBoomPart, layout, centers, context.axes.reference);
       if (is_first && wants_boom && !boom) {
         report.notes.push_back(
-            "twist against the lowest section: fewer than two markers of the boom are whole");
+            "twist does not count from the boom: fewer than two of its markers are whole");
       }
     }
     AddPartSections(context, boom, centerline, up.reference, options, &report);

@@ -56,10 +56,10 @@ struct Section {
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
   // Angle of the chord about up, from RigNumbers::twist_reference; positive to leeward.
-  Estimate twist_deg;
-  // Angle about up from the direction in which the lowest line ends at the leech to the direction
-  // in which this curve does; positive to leeward.
-  Estimate leech_twist_deg;
+  std::optional<Estimate> twist_deg;
+  // Angle about up from the direction in which RigNumbers::reference_section ends at the leech to
+  // the direction in which this curve does; positive to leeward.
+  std::optional<Estimate> leech_twist_deg;
   Estimate girth_m;  // length of the curve
   SpaceCurve curve;
   Eigen::Vector3d chord_direction = Eigen::Vector3d::UnitX();  // unit
@@ -91,11 +91,15 @@ struct RigNumbers {
   std::optional<Estimate> luff_bend_m;  // positive forwards: bend of the mast
   std::optional<Estimate> luff_sag_m;   // positive to leeward: sag of the forestay
   std::vector<int> luff_marker_ids;     // from foot to head; empty without bend and sag
-  // Angle about up from the centre line to the boom or, without one, to the chord of the lowest
-  // line; positive to leeward. Nothing without a centre line.
+  // Angle about up from the centre line to the boom or, without one, to the chord of the reference
+  // section; positive to leeward. Nothing without a centre line.
   std::optional<Estimate> sheeting_angle_deg;
-  std::string aft_reference;    // "centerline" or "lowest section"
-  std::string twist_reference;  // "boom", of the first part with lines, or "lowest section"
+  // The lowest line that is whole at both ends; empty if every line with a section lacks an end.
+  std::string reference_section;
+  // What stands for the direction aft, and from what twist counts: "centerline" or "boom" (of the
+  // first part with lines), else "lowest section", "section h2" where the reference section is
+  // another one, or "none".
+  std::string aft_reference, twist_reference;
   // What gives the part's up: "luff"; "lines" without two whole markers of the luff; "z of the
   // frame" where neither does.
   std::string up_reference;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -36,9 +37,13 @@ std::string WithSigma(const Estimate& estimate, double factor, int digits) {
   return fmt::format("{:.{}f} ± {:.{}f}", value, digits, factor * *estimate.sigma, digits);
 }
 
+std::string TwistText(const std::optional<Estimate>& twist_deg) {
+  if (!twist_deg) return "no twist";
+  if (twist_deg->value == 0 && twist_deg->sigma.value_or(0) == 0) return "reference of the twist";
+  return fmt::format("twist {}°", WithSigma(*twist_deg, 1, 2));
+}
+
 std::vector<std::string> NumbersText(const Section& section) {
-  const bool is_reference =
-      section.twist_deg.value == 0 && section.twist_deg.sigma.value_or(0) == 0;
   const std::string draft =
       section.draft_position ? WithSigma(*section.draft_position, 100, 1) + " %" : "none";
   return {
@@ -47,8 +52,7 @@ std::vector<std::string> NumbersText(const Section& section) {
       fmt::format("camber {} %, draft {}", WithSigma(section.camber, 100, 2), draft),
       fmt::format("entry {}°, exit {}°", WithSigma(section.entry_angle_deg, 1, 1),
                   WithSigma(section.exit_angle_deg, 1, 1)),
-      is_reference ? "reference of the twist"
-                   : fmt::format("twist {}°", WithSigma(section.twist_deg, 1, 2)),
+      TwistText(section.twist_deg),
   };
 }
 
@@ -142,6 +146,7 @@ std::vector<std::string> FootLines(const SectionReport& report, const ShapeFrame
   };
   add("frame " + FrameText(frame));
   for (const RigNumbers& rig : report.rigs) {
+    if (rig.twist_reference == "none") continue;  // a note says why
     add(fmt::format("twist of {} against {}", rig.part, rig.twist_reference));
   }
   if (!report.rigs.empty()) add("± is one standard deviation");

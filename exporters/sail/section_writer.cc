@@ -50,6 +50,7 @@ Json JsonOf(const RigNumbers& rig) {
                  {"twist_reference", rig.twist_reference},
                  {"up_reference", rig.up_reference},
                  {"aft_reference", rig.aft_reference}};
+  if (!rig.reference_section.empty()) object["reference_section"] = rig.reference_section;
   AddEstimate("luff_bend_m", rig.luff_bend_m, &object);
   AddEstimate("luff_sag_m", rig.luff_sag_m, &object);
   AddEstimate("sheeting_angle_deg", rig.sheeting_angle_deg, &object);

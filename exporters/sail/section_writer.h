@@ -16,8 +16,8 @@ constexpr int kNumProfilePoints = 101;  // per section in all files
 // One row per section from the lowest up, then one row per missing section with the reason.
 void WriteSectionsCsv(const SectionReport& report, std::ostream& out);
 
-// One object: frame, notes, sections (with markers and residuals), rigs (with twist_reference and
-// up_reference by part), missing.
+// One object: frame, notes, sections (with markers and residuals), rigs (with reference_section,
+// twist_reference, up_reference and aft_reference by part), missing.
 void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
 // For each section the points of the curve, with an empty marker_id, then the markers.

@@ -157,6 +157,7 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   input.sections = MakeReportSections(shape.sail.sections);
+  input.section_notes = shape.sail.sections.notes;
   input.rigs = MakeReportRigs(shape.sail.sections);
   input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
   input.clip = seed.clip;

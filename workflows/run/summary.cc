@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <optional>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -54,13 +55,17 @@ std::string FirstNames(const std::vector<std::string>& names) {
   return names.size() > kMaxNames ? text + ", ..." : text;
 }
 
-std::string RangeText(const std::vector<Section>& sections, double (*value)(const Section&)) {
+// `3.1 to 9.5`; empty if no section has such a number.
+std::string RangeText(const std::vector<Section>& sections,
+                      std::optional<double> (*value)(const Section&)) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Section& section : sections) {
-    low = std::min(low, value(section));
-    high = std::max(high, value(section));
+    const std::optional<double> of_section = value(section);
+    if (!of_section) continue;
+    low = std::min(low, *of_section);
+    high = std::max(high, *of_section);
   }
-  return fmt::format("{:.1f} to {:.1f}", low, high);
+  return low > high ? "" : fmt::format("{:.1f} to {:.1f}", low, high);
 }
 
 // `31.2 +- 1.1`, or without a sigma `31.2`.
@@ -80,9 +85,17 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   WriteFormatted(out, "frame: {}\n", report.frame.name);
   const std::vector<Section>& sections = report.sail.sections.sections;
   if (!sections.empty()) {
-    WriteFormatted(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
-                   RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
-                   RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
+    const auto camber_percent = [](const Section& s) -> std::optional<double> {
+      return 100.0 * s.camber.value;
+    };
+    const auto twist_deg = [](const Section& s) -> std::optional<double> {
+      if (!s.twist_deg) return std::nullopt;
+      return s.twist_deg->value;
+    };
+    const std::string twists = RangeText(sections, twist_deg);
+    WriteFormatted(out, "sections: {}; camber {} %, {}\n", sections.size(),
+                   RangeText(sections, camber_percent),
+                   twists.empty() ? "no twist" : fmt::format("twist {} deg", twists));
   }
   for (const RigNumbers& rig : report.sail.sections.rigs) {
     const std::string text = RigText(rig);

@@ -198,8 +198,8 @@ function sectionSvg(sections) {
     if (section.design) svg.append(path(section.design, {'stroke-dasharray': size / 2}));
     svg.append(path(section.profile),
         svgElement('text', {x: low[0], y: -low[1] + (i + 2) * 1.5 * size, fill: stroke},
-            `${sectionName(section)}: camber ${fixed(section.camber_percent, 2)} %, twist ${
-              fixed(section.twist_deg, 1)}°`));
+            `${sectionName(section)}: camber ${fixed(section.camber_percent, 2)} %${
+              section.twist_deg === undefined ? '' : `, twist ${fixed(section.twist_deg, 1)}°`}`));
   });
   return svg;
 }

@@ -184,8 +184,9 @@ function figure(name, key, sigmaKey, digits, factor) {
   };
 }
 
-function fillSections({sections, design}) {
+function fillSections({sections, section_notes: notes, design}) {
   byId('sections').hidden = false;
+  byId('note_sections').append(...(notes || []).map(textContent => element('p', {textContent})));
   if (design) {
     byId('note_design').hidden = false;
     byId('note_design').textContent = `Dashed: ${design.name}, placed so that the markers fit it best. ${

@@ -89,8 +89,36 @@ TEST(ComparisonSections, ChordsOverDifferentMarkersAreNotCompared) {
                            [](const auto& d) { return d.section == "h1"; }));
   EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr("sail h1: not compared")));
   EXPECT_THAT(comparison.notes, testing::Not(testing::Contains(HasSubstr("h1: compared over"))));
-  EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr("twists of sail cannot be compared")));
-  EXPECT_EQ(comparison.differences.size(), 4u * 5);
+  // Twist counts from h2, which is whole in both.
+  EXPECT_EQ(comparison.of_shape.rigs.at(0).reference_section, "h2");
+  EXPECT_EQ(comparison.of_reference.rigs.at(0).reference_section, "h2");
+  EXPECT_EQ(comparison.differences.size(), 4u * 6);
+}
+
+// The leech marker of the lowest line is missing in one of them only.
+TEST(ComparisonSections, TwistCountsFromTheSameSectionInBoth) {
+  const MarkerShape whole = BoatShape(0.001);
+  const SectionComparison all = Compare(whole, whole);
+  const double h2_deg = Find(all, "h2", "twist_deg").value;
+  for (const SectionComparison& comparison :
+       {Compare(Without({16}, whole), whole), Compare(whole, Without({16}, whole))}) {
+    EXPECT_EQ(comparison.of_shape.rigs.at(0).reference_section, "h2");
+    EXPECT_EQ(comparison.of_reference.rigs.at(0).reference_section, "h2");
+    EXPECT_EQ(comparison.differences.size(), 5u * 6);
+    const SectionDifference& twist = Find(comparison, "h5", "twist_deg");
+    EXPECT_NEAR(twist.Difference(), 0, 1e-6);
+    EXPECT_NEAR(twist.value, Find(all, "h5", "twist_deg").value - h2_deg, 0.02);
+    EXPECT_THAT(comparison.notes,
+                testing::Contains(HasSubstr("shape: twist, leech twist, bend and sag of sail "
+                                            "refer to section h2")));
+  }
+}
+
+TEST(ComparisonSections, WithoutAWholeSectionNoTwistIsCompared) {
+  const MarkerShape whole = BoatShape(0.001);
+  const SectionComparison comparison = Compare(Without({16, 26, 36, 46, 56}, whole), whole);
+  EXPECT_EQ(comparison.differences.size(), 5u * 5);
+  EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr("reference: no twist, ")));
 }
 
 TEST(ComparisonSections, SigmaIsOfBothTogether) {

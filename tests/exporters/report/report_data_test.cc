@@ -231,6 +231,7 @@ TEST_F(ReportData, UpAndFrontAreTheCentralCamerasUnlessGiven) {
 
 TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_FALSE(Parsed().contains("sections"));
+  EXPECT_FALSE(Parsed().contains("section_notes"));
   EXPECT_FALSE(Parsed().contains("surfaces"));
   EXPECT_FALSE(Parsed().contains("rigs"));
   EXPECT_FALSE(Parsed().contains("design"));
@@ -242,6 +243,7 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
   section.design_m = {{0, 0.01}, {2, 0.01}};
   input.sections = {section};
+  input.section_notes = {"twist of sail refers to section h2"};
   input.design = ReportDesign{"design.step", 30, 12.5};
   ReportSurface surface;
   surface.part = "hull";
@@ -258,6 +260,8 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_EQ(data.at("sections").at(0).at("design").size(), 2u);
   EXPECT_EQ(data.at("design").at("distance_mm"), 12.5);
   EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
+  EXPECT_FALSE(data.at("sections").at(0).contains("twist_deg"));
+  EXPECT_EQ(data.at("section_notes").at(0), "twist of sail refers to section h2");
   EXPECT_EQ(data.at("surfaces").at(0).at("part"), "hull");
   EXPECT_EQ(data.at("surfaces").at(0).at("volume_m3"), 0.25);
   EXPECT_FALSE(data.at("surfaces").at(0).contains("sigma_mm"));

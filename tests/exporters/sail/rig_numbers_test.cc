@@ -89,6 +89,27 @@ TEST(RigNumbers, WithoutABoomAndACenterLineTheLowestChordStandsIn) {
   ExpectLuff(rig, 0);
 }
 
+// Without its leech, the lowest chord points elsewhere.
+TEST(RigNumbers, AChordThatLacksAnEndStandsForNothing) {
+  constexpr double kTwist_deg = 3.0;  // of the second line
+  Sail sail = BentSail();
+  RemoveMarker(51, &sail.shape);  // one marker of the boom is no boom
+  for (const int id : {106, 107, 108}) RemoveMarker(id, &sail.shape);
+  RigNumbers rig = SectionsOf(sail).rigs.at(0);
+  EXPECT_EQ(rig.reference_section, "h2");
+  EXPECT_NEAR(rig.sheeting_angle_deg->value, kTwist_deg - kCenterline_deg, 1e-4);
+  ExpectLuff(rig, kCenterline_deg);
+  RemoveMarker(62, &sail.shape);  // the same of the centre line
+  rig = SectionsOf(sail).rigs.at(0);
+  EXPECT_EQ(rig.aft_reference, "section h2");
+  ExpectLuff(rig, kTwist_deg);
+  for (const int id : {208, 308, 408, 508}) RemoveMarker(id, &sail.shape);
+  rig = SectionsOf(sail).rigs.at(0);
+  EXPECT_EQ(rig.aft_reference, "none");
+  EXPECT_EQ(rig.reference_section, "");
+  EXPECT_FALSE(rig.luff_bend_m || rig.luff_sag_m);
+}
+
 TEST(RigNumbers, NoNumberDependsOnTheFrame) {
   Sail sail = BentSail();
   SetSigma(0.001, &sail.shape);
@@ -182,7 +203,7 @@ TEST(RigNumbers, ASailHasTheSameNumbersBesideAnotherOneAndItsBoom) {
   EXPECT_EQ(report.rigs[0].twist_reference, "boom");
   EXPECT_EQ(report.rigs[1].twist_reference, "lowest section");
   EXPECT_EQ(report.rigs[1].up_reference, "luff");
-  EXPECT_GT(report.sections[0].twist_deg.value, 2);
+  EXPECT_GT(report.sections[0].twist_deg->value, 2);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(report.sections[3 + i].part, "jib");
     const auto a = NumbersOf(alone.sections[i]), b = NumbersOf(report.sections[3 + i]);
@@ -200,8 +221,8 @@ std::vector<Estimate> Estimates(const SectionReport& report) {
           rig.sheeting_angle_deg.value(),
           report.sections.at(1).girth_m,
           report.sections.at(4).girth_m,
-          report.sections.at(1).leech_twist_deg,
-          report.sections.at(4).leech_twist_deg};
+          report.sections.at(1).leech_twist_deg.value(),
+          report.sections.at(4).leech_twist_deg.value()};
 }
 
 TEST(RigNumbers, SigmasAgreeWithMonteCarlo) {

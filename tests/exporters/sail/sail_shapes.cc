@@ -143,8 +143,8 @@ std::vector<double> NumbersOf(const Section& section) {
           section.draft_position ? section.draft_position->value : -1,
           section.entry_angle_deg.value,
           section.exit_angle_deg.value,
-          section.twist_deg.value,
-          section.leech_twist_deg.value,
+          section.twist_deg.value().value,
+          section.leech_twist_deg.value().value,
           section.girth_m.value,
           section.height_m};
 }

@@ -52,7 +52,7 @@ TEST(SectionNumbers, SigmasAgreeWithMonteCarlo) {
     const std::vector<double> sigmas = {
         *section.chord_m.sigma,         *section.camber.sigma,
         *section.draft_position->sigma, *section.entry_angle_deg.sigma,
-        *section.exit_angle_deg.sigma,  *section.twist_deg.sigma};
+        *section.exit_angle_deg.sigma,  *section.twist_deg->sigma};
     for (int k = 0; k < 6; ++k) {
       if (i == 0 && k == 5) continue;  // the lowest section's twist is 0 by definition
       const double spread = std::sqrt(squares[i][k] / kNumRuns);
@@ -124,8 +124,8 @@ TEST(SectionNumbers, SigmasNeedAllMarkersOfTheSection) {
   const SectionReport report = SectionsOf(sail);
   EXPECT_TRUE(report.sections[0].camber.sigma);
   EXPECT_FALSE(report.sections[1].camber.sigma);
-  EXPECT_FALSE(report.sections[1].twist_deg.sigma);
-  EXPECT_TRUE(report.sections[2].twist_deg.sigma);
+  EXPECT_FALSE(report.sections[1].twist_deg->sigma);
+  EXPECT_TRUE(report.sections[2].twist_deg->sigma);
 }
 
 }  // namespace

@@ -44,11 +44,11 @@ TEST(Section, CircularArcsGiveTheirCamberAnglesAndTwist) {
     EXPECT_NEAR(section.draft_position->value, 0.5, 1e-5);
     EXPECT_NEAR(section.entry_angle_deg.value, angle_deg, 0.03);
     EXPECT_NEAR(section.exit_angle_deg.value, angle_deg, 0.03);
-    EXPECT_NEAR(section.twist_deg.value, twists_deg[i], 1e-5);
+    EXPECT_NEAR(section.twist_deg->value, twists_deg[i], 1e-5);
     const double radius_m = chords_m[i] / (2 * std::sin(angle_deg * kRadPerDeg));
     EXPECT_NEAR(section.girth_m.value, 2 * radius_m * angle_deg * kRadPerDeg, 1e-5);
     const double lowest_angle_deg = 2 * std::atan(2 * cambers[0]) * kDegPerRad;
-    EXPECT_NEAR(section.leech_twist_deg.value, twists_deg[i] - angle_deg + lowest_angle_deg, 0.05);
+    EXPECT_NEAR(section.leech_twist_deg->value, twists_deg[i] - angle_deg + lowest_angle_deg, 0.05);
     EXPECT_NEAR(section.height_m, 2.0 * i, 1e-9);
     EXPECT_EQ(section.markers.size(), 12u);
     EXPECT_FALSE(section.camber.sigma);
@@ -105,8 +105,9 @@ TEST(Section, StraightTwistedLinesHaveTwistAndNoDraftPosition) {
     EXPECT_FALSE(section.draft_position);
   }
   // A flat sail has no leeward side; the sign is that of +y or -y.
-  EXPECT_NEAR(std::abs(report.sections[1].twist_deg.value), 5, 1e-6);
-  EXPECT_NEAR(report.sections[2].twist_deg.value / report.sections[1].twist_deg.value, -4.2, 1e-6);
+  EXPECT_NEAR(std::abs(report.sections[1].twist_deg->value), 5, 1e-6);
+  EXPECT_NEAR(report.sections[2].twist_deg->value / report.sections[1].twist_deg->value, -4.2,
+              1e-6);
 }
 
 TEST(Section, OtherTackGivesTheSameNumbers) {
@@ -223,16 +224,16 @@ TEST(Section, TwistCountsFromTheBoomWhereTheLayoutHasOne) {
   SetSigma(0.001, &sail.shape);
   SectionReport report = SectionsOf(sail);
   EXPECT_EQ(report.rigs.at(0).twist_reference, "boom");
-  EXPECT_NEAR(report.sections[0].twist_deg.value, 4, 1e-3);
-  EXPECT_NEAR(report.sections[2].twist_deg.value, 18, 1e-3);
-  EXPECT_GT(*report.sections[0].twist_deg.sigma, 0);
+  EXPECT_NEAR(report.sections[0].twist_deg->value, 4, 1e-3);
+  EXPECT_NEAR(report.sections[2].twist_deg->value, 18, 1e-3);
+  EXPECT_GT(*report.sections[0].twist_deg->sigma, 0);
 
   RemoveMarker(51, &sail.shape);
   RemoveMarker(52, &sail.shape);
   report = SectionsOf(sail);
   EXPECT_EQ(report.rigs.at(0).twist_reference, "lowest section");
-  EXPECT_NEAR(report.sections[0].twist_deg.value, 0, 1e-12);
-  EXPECT_EQ(*report.sections[0].twist_deg.sigma, 0);
+  EXPECT_NEAR(report.sections[0].twist_deg->value, 0, 1e-12);
+  EXPECT_EQ(*report.sections[0].twist_deg->sigma, 0);
   ASSERT_EQ(report.notes.size(), 1u);
   EXPECT_THAT(report.notes[0], HasSubstr("boom"));
 }

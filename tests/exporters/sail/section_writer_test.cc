@@ -17,6 +17,7 @@ namespace velamap {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 struct Example {
@@ -78,7 +79,7 @@ TEST(SectionWriter, CsvHasAHeaderAndARowASection) {
   EXPECT_EQ(rows[0].at("section"), "h1");
   EXPECT_EQ(rows[0].at("num_markers"), "12");
   EXPECT_EQ(std::stod(rows[0].at("camber")), example.report.sections[0].camber.value);
-  EXPECT_EQ(std::stod(rows[3].at("sigma_twist_deg")), *example.report.sections[3].twist_deg.sigma);
+  EXPECT_EQ(std::stod(rows[3].at("sigma_twist_deg")), *example.report.sections[3].twist_deg->sigma);
   EXPECT_EQ(rows[1].at("section"), "height=1");
   EXPECT_EQ(rows[1].at("num_markers"), "");
   EXPECT_EQ(rows[4].at("section"), "h4, \"top\" <5>");
@@ -92,6 +93,7 @@ TEST(SectionWriter, JsonHasTheSameNumbersAsTheCsv) {
   const auto json = nlohmann::json::parse(Written(WriteSectionsJson, example));
   EXPECT_EQ(json["frame"]["name"], "lines h1 v1");
   EXPECT_EQ(json["rigs"][0]["twist_reference"], "lowest section");
+  EXPECT_EQ(json["rigs"][0]["reference_section"], "h1");
   ASSERT_EQ(json["sections"].size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     for (const char* key : {"chord_m", "camber", "draft_position", "entry_angle_deg",
@@ -101,6 +103,28 @@ TEST(SectionWriter, JsonHasTheSameNumbersAsTheCsv) {
   }
   EXPECT_EQ(json["sections"][0]["markers"].size(), 12u);
   EXPECT_EQ(json["missing"][0]["section"], "h4, \"top\" <5>");
+}
+
+TEST(SectionWriter, ATwistThatIsUnknownIsLeftOut) {
+  Sail sail = ExampleSail();
+  for (const int id : {111, 211, 311}) RemoveMarker(id, &sail.shape);
+  const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
+  const Example example{frame, ComputeSections(sail.shape, frame, sail.layout, nullptr)};
+  const auto rows = Rows(Written(WriteSectionsCsv, example));
+  const auto json = nlohmann::json::parse(Written(WriteSectionsJson, example));
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const char* key : {"twist_deg", "leech_twist_deg"}) {
+      EXPECT_EQ(rows[i].at(key), "");
+      EXPECT_FALSE(json["sections"][i].contains(key));
+    }
+  }
+  EXPECT_EQ(json["rigs"][0]["twist_reference"], "none");
+  EXPECT_FALSE(json["rigs"][0].contains("reference_section"));
+  EXPECT_THAT(json["notes"][0], HasSubstr("no twist, "));
+  const std::string svg = Written(WriteSectionProfilesSvg, example);
+  EXPECT_THAT(svg, HasSubstr(">no twist</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr("against none")));
 }
 
 TEST(SectionWriter, ProfilesBeginAtTheLuffAndEndAtTheLeech) {

@@ -93,6 +93,23 @@ TEST_F(ShapeExporterCommandTest, WritesSectionsAndSurfaceInTheFrameOfTheLines) {
   EXPECT_LT(FindWholeMarker(shape, luff)->x_in_shape_m[0]->norm(), 1e-9);
 }
 
+// Ids at the ends of lines that the model lacks stand for leeches that were never seen.
+TEST_F(ShapeExporterCommandTest, SaysWhatTwistCountsFrom) {
+  Layout layout = sail_.layout;
+  std::vector<MarkerLine>& lines = layout.parts.front().horizontal;
+  lines[0].marker_ids.push_back(40);
+  WriteTextFile(dir_ / "layout.yml", LayoutText(layout));
+  EXPECT_THAT(Export().out,
+              AllOf(HasSubstr(" %, twist "), HasSubstr("section_note: twist, leech twist, bend and "
+                                                       "sag of sail refer to section h2, ")));
+  lines[1].marker_ids.push_back(41);
+  lines[2].marker_ids.push_back(42);
+  WriteTextFile(dir_ / "layout.yml", LayoutText(layout));
+  EXPECT_THAT(Export().out, AllOf(HasSubstr(" %, no twist\n"),
+                                  HasSubstr("section_note: no twist, leech twist, bend and sag of "
+                                            "sail: each of its lines lacks ")));
+}
+
 // Every program reads a header and as many fields in each row; the frame is in shape.json.
 TEST_F(ShapeExporterCommandTest, TablesAreTidy) {
   const std::vector<MarkerLine>& lines = sail_.layout.parts.front().horizontal;

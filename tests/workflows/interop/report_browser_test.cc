@@ -63,6 +63,7 @@ class ReportBrowser : public testing::Test {
     }
     section.design_m = {{0, 0}, {1, 0.15}, {2.345, 0}};
     input.sections = {section};
+    input.section_notes = {"twist of sail refers to section h4"};
     input.design = ReportDesign{"design.step", 130, 31.25};
     input.surfaces = {SurfaceThrough(example.shape)};
     std::ofstream out(*dir_ / "report.html", std::ios::binary);
@@ -118,6 +119,7 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   EXPECT_THAT(dom, HasSubstr("line h3"));
   EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
   EXPECT_THAT(dom, HasSubstr("Dashed: design.step"));
+  EXPECT_THAT(dom, HasSubstr("twist of sail refers to section h4"));
   EXPECT_THAT(dom, HasSubstr("Registration.method"));
   EXPECT_THAT(dom, HasSubstr("data:image/jpeg;base64,"));
   EXPECT_THAT(dom, HasSubstr("save the chart"));
@@ -153,6 +155,7 @@ TEST_F(ReportBrowser, NamesRunNoScript) {
   section.name = name;
   section.profile_m = section.design_m = {{0, 0}, {1, 0.2}, {2, 0}};
   input.sections = {section};
+  input.section_notes = {name};
   input.design = ReportDesign{name, 30, 1.5};
   std::ostringstream page;
   WriteReport(input, page);
