@@ -73,11 +73,11 @@ struct Layout {
 
 // Reads a layout file (YAML; the README.md of this folder lists the keys). The path of a dictionary
 // file is relative to the layout file. Throws InputError that names file, line and key for unknown
-// keys and invalid values: for example a marker that is twice on a line, in two parts or has two
-// lengths; a marker length outside of 0.1 mm to 10 m; an edge that does not fit the lines; a
-// distance or known point that is incomplete or of a marker that no part names; a known point that
-// is given twice; and a frame for which the layout lacks the markers, part, lines or points. Warns
-// of marker lengths that are not used because no part names the marker.
+// keys and invalid values: for example a marker that is twice on a line, on two horizontal lines,
+// in two parts or has two lengths; a marker length outside of 0.1 mm to 10 m; an edge that does not
+// fit the lines; a distance or known point that is incomplete or of a marker that no part names; a
+// known point that is given twice; and a frame for which the layout lacks the markers, part, lines
+// or points. Warns of marker lengths that are not used because no part names the marker.
 Layout ReadLayout(const std::string& path);
 
 // The layout for --dictionary and --marker_length, which has no parts and accepts every id. Throws

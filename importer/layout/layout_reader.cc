@@ -85,6 +85,28 @@ std::vector<MarkerLine> ReadLines(const YamlItem& list, const std::string& part,
   return lines;
 }
 
+// A marker on two horizontal lines would draw the surface from one of them to the other. It may be
+// on a horizontal and on vertical ones, which meet there.
+void CheckOneLineEach(const YamlItem& list, const std::vector<MarkerLine>& lines) {
+  struct Place {
+    const MarkerLine* line;
+    int line_of_file;
+  };
+  std::map<int, Place> place_of_id;
+  auto line = lines.begin();
+  ForEachElement(list, [&](const YamlItem& item) {
+    const Place here{&*line++, item.node.Mark().line + 1};
+    for (const int id : here.line->marker_ids) {
+      const auto [first, is_new] = place_of_id.emplace(id, here);
+      if (is_new) continue;
+      item.Fail(fmt::format(
+          "marker {} is on line '{}' and on line '{}' ({}:{}); a marker is on one "
+          "horizontal line: correct its id where it is wrong",
+          id, here.line->name, first->second.line->name, item.path, first->second.line_of_file));
+    }
+  });
+}
+
 LayoutPart ReadPart(const YamlItem& item, const std::string& name, PartOfId* part_of_id) {
   LayoutPart part;
   part.name = name;
@@ -92,7 +114,10 @@ LayoutPart ReadPart(const YamlItem& item, const std::string& name, PartOfId* par
   ReadMap(item,
           {{"rigid", [&](const YamlItem& value) { part.rigid = ReadBool(value); }},
            {"horizontal",
-            [&](const YamlItem& value) { part.horizontal = ReadLines(value, name, part_of_id); }},
+            [&](const YamlItem& value) {
+              part.horizontal = ReadLines(value, name, part_of_id);
+              CheckOneLineEach(value, part.horizontal);
+            }},
            {"vertical",
             [&](const YamlItem& value) { part.vertical = ReadLines(value, name, part_of_id); }},
            {"edges", [&](const YamlItem& value) { edges.emplace(value); }},

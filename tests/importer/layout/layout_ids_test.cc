@@ -28,6 +28,8 @@ class LayoutIds : public testing::Test {
                              {path_ + ":" + std::to_string(line) + ": ", part});
   }
 
+  const std::string& path() const { return path_; }
+
  private:
   TempDir dir_;
   const std::string path_ = (dir_ / "layout.yml").string();
@@ -76,6 +78,37 @@ TEST_F(LayoutIds, OverlapsAreFoundInRanges) {
               "marker 9 is in part 'sail' already");
   ExpectError("marker_lengths: {4-6: 0.2, 5: 0.3}\n", 3,
               "marker_lengths.5: marker 5 is given a second length");
+}
+
+// A mistyped id, which would bend the line to where that marker really is.
+TEST_F(LayoutIds, AMarkerIsOnOneHorizontalLine) {
+  ExpectError(
+      "parts:\n  sail:\n    horizontal:\n      - {name: h1, markers: [0-3]}\n"
+      "      - {name: h2, markers: [17, 3, 19]}\n",
+      7,
+      "parts.sail.horizontal[1]: marker 3 is on line 'h2' and on line 'h1' (" + path() +
+          ":6); a marker is on one horizontal line: correct its id where it is wrong");
+  // Each on its own line of the file, and with a line between.
+  ExpectError(
+      "parts:\n  sail:\n    horizontal:\n      - name: h1\n        markers: [0, 1]\n"
+      "      - {name: h2, markers: [5-7]}\n      - name: h3\n        markers: [10-12, 1]\n",
+      9, "marker 1 is on line 'h3' and on line 'h1' (" + path() + ":6)");
+}
+
+TEST_F(LayoutIds, LinesMeetInAMarker) {
+  // The luff and the leech of a triangle end at its head, on the highest horizontal line.
+  const Layout layout = Read(R"(parts:
+  sail:
+    horizontal:
+      - {name: h1, markers: [0-3]}
+      - {name: h2, markers: [4-5]}
+      - {name: h3, markers: [9]}
+    vertical:
+      - {name: luff, markers: [0, 4, 9]}
+      - {name: leech, markers: [3, 5, 9]}
+)");
+  EXPECT_EQ(layout.parts.at(0).horizontal.size(), 3u);
+  EXPECT_THAT(layout.parts.at(0).vertical.at(1).marker_ids, ElementsAre(3, 5, 9));
 }
 
 }  // namespace
