@@ -1,6 +1,7 @@
 #include "importer/print/placement_drawing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -85,22 +86,51 @@ double LeastDistance(const Placement& placement) {
   return std::min(least, 4 * placement.sticker_mm);
 }
 
+// The foot of the sail on the page, as a height over x.
+struct Foot {
+  Eigen::Vector2d tack, clew;
+
+  double Slope() const { return (clew.y() - tack.y()) / (clew.x() - tack.x()); }
+  double At(double x_mm) const { return tack.y() + Slope() * (x_mm - tack.x()); }
+};
+
+constexpr double kEdge_mm = 0.5;  // width of the sail's outline
+
+// Moves a text that the foot would strike through below it, where nothing is behind it.
+void MoveOffFoot(const Foot& foot, Text* text) {
+  constexpr double kLetter = 0.66, kAscent = 0.76, kDescent = 0.24;  // of the font size
+  constexpr double kGap_mm = 0.4;
+  const double half_width_mm =
+      0.5 * kLetter * text->size_mm * static_cast<double>(text->text.size());
+  const double x_mm = text->position_mm.x();
+  const auto [highest_mm, lowest_mm] =
+      std::minmax({foot.At(x_mm - half_width_mm), foot.At(x_mm + half_width_mm)});
+  const double from_edge_mm = 0.5 * kEdge_mm + kGap_mm;
+  double& baseline_mm = text->position_mm.y();
+  if (baseline_mm + kDescent * text->size_mm + from_edge_mm <= highest_mm) return;
+  baseline_mm = lowest_mm + from_edge_mm + kAscent * text->size_mm;
+  text->has_halo = false;  // it would nibble at the foot
+}
+
 void DrawSailEdges(const Placement& placement, const PictureMap& map, Drawing* page) {
   if (placement.sail_mm.empty()) return;
   const Eigen::Vector2d tack = map(placement.sail_mm[0]), clew = map(placement.sail_mm[1]),
                         head = map(placement.sail_mm[2]);
-  page->strokes.push_back({{tack, clew, head}, 0.5, kSail, true});
+  page->strokes.push_back({{tack, clew, head}, kEdge_mm, kSail, true});
   const auto write = [&](const std::string& text, const Eigen::Vector2d& place, TextAnchor anchor) {
     page->texts.push_back({text, place, kWords_mm, anchor, false, kSail});
   };
   const auto metres = [&](std::size_t from, std::size_t to) {
     return (placement.sail_mm[from] - placement.sail_mm[to]).norm() / 1000;
   };
-  write("tack", tack + Eigen::Vector2d(0, 4.2), TextAnchor::kMiddle);
-  write("clew", clew + Eigen::Vector2d(0, 4.2), TextAnchor::kMiddle);
+  // Beside the names of the outer vertical lines, and the length of the foot below all names.
+  write("tack", tack + Eigen::Vector2d(1.0, 4.2), TextAnchor::kEnd);
+  write("clew", clew + Eigen::Vector2d(-1.0, 4.2), TextAnchor::kStart);
   write("head", head + Eigen::Vector2d(0, -2.0), TextAnchor::kMiddle);
-  write(fmt::format("foot {:.3f} m", metres(0, 1)), 0.5 * (tack + clew) + Eigen::Vector2d(0, 9.0),
-        TextAnchor::kMiddle);
+  constexpr double kHalfWidth_mm = 11.0;
+  const double below_mm = 9.0 + kHalfWidth_mm * std::abs(Foot{tack, clew}.Slope());
+  write(fmt::format("foot {:.3f} m", metres(0, 1)),
+        0.5 * (tack + clew) + Eigen::Vector2d(0, below_mm), TextAnchor::kMiddle);
   write(fmt::format("leech {:.3f} m", metres(1, 2)),
         0.62 * head + 0.38 * clew + Eigen::Vector2d(3.0, -3.0), TextAnchor::kStart);
   write(fmt::format("luff {:.3f} m", metres(0, 2)), head + Eigen::Vector2d(6.0, 1.0),
@@ -125,6 +155,9 @@ void DrawLines(const Placement& placement, const PictureMap& map, double type_mm
     page->texts.push_back(
         {line.name, stroke.points_mm.front() + Eigen::Vector2d(0, half + 2.0 * type_mm),
          0.85 * type_mm, TextAnchor::kMiddle, false, kVerticalName, kAnyWidth, true});
+    if (!placement.sail_mm.empty()) {
+      MoveOffFoot({map(placement.sail_mm[0]), map(placement.sail_mm[1])}, &page->texts.back());
+    }
   }
   for (const PlacedLine& line : placement.horizontal) {
     Stroke stroke{{}, 0.3, kHorizontal};
