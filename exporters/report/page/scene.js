@@ -95,32 +95,51 @@ function oneSurface(surface) {
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
 }
 
+const boxOf = points => new THREE.Box3().setFromPoints(points);
+
+const sizeOf = points => boxOf(points).getSize(new THREE.Vector3()).length();
+
+// What the view has to hold: `main`, all markers and the sails to the edges of their cloth. Where the
+// sails would fill less than half of it, they are alone, and `outside` names the other parts.
+function framing(markers, surfaces) {
+  const sails = surfaces.filter(surface => surface.is_sail);
+  const isOfSail = marker => sails.some(({part}) => part === marker.part);
+  const cornersOf = some => some.flatMap(({corners}) => corners).map(x => new THREE.Vector3(...x));
+  const cloth = sails.flatMap(({vertices}) => Array.from(
+      {length: vertices.length / 3}, (_, i) => new THREE.Vector3().fromArray(vertices, 3 * i)));
+  const all = [...cornersOf(markers), ...cloth];
+  const ofSails = [...cornersOf(markers.filter(isOfSail)), ...cloth];
+  if (ofSails.length === 0 || 2 * sizeOf(ofSails) >= sizeOf(all)) return {all, main: all, outside: []};
+  const others = markers.filter(marker => !isOfSail(marker)).map(({part}) => part || 'no part');
+  return {all, main: ofSails, outside: [...new Set(others)].sort()};
+}
+
 // Axes of the frame along three edges of the box of the points, with a tick at each round number of
-// metres; `labels` are the texts with their places.
+// metres; `labels` are the texts with their places, the names first. y runs along the end of x, away
+// from z, where the ticks of one would stand beside those of the other.
 function boxAxes(points) {
-  const box = new THREE.Box3().setFromPoints(points);
+  const box = boxOf(points);
   const size = box.getSize(new THREE.Vector3());
   const step = roundUp(Math.max(size.x, size.y, size.z) / 5);
   const digits = Math.max(0, -Math.floor(Math.log10(step)));
-  const ends = [], labels = [];
-  ['x', 'y', 'z'].forEach((axis, i) => {
-    const other = ['y', 'x', 'x'][i];
+  const ends = [], names = [], ticks = [];
+  for (const [axis, other, side] of [['x', 'y', -1], ['z', 'x', -1], ['y', 'x', 1]]) {
     const at = (place, aside) => {
       const x = box.min.clone();
       x[axis] = place;
-      x[other] -= aside;
+      x[other] = (side > 0 ? box.max : box.min)[other] + side * aside;
       return x;
     };
     ends.push(at(box.min[axis], 0), at(box.max[axis], 0));
     for (let k = Math.ceil(box.min[axis] / step); k * step <= box.max[axis]; ++k) {
       ends.push(at(k * step, 0), at(k * step, 0.1 * step));
-      if (axis === 'z' && box.max[axis] - k * step < 0.4 * step) continue;  // its name stands there
-      labels.push({text: (k * step).toFixed(digits), place: at(k * step, 0.25 * step)});
+      if (axis !== 'y' && box.max[axis] - k * step < 0.4 * step) continue;  // its name stands there
+      ticks.push({text: (k * step).toFixed(digits), place: at(k * step, 0.25 * step)});
     }
-    labels.push({text: `${axis}, m`, place: axis === 'z' ? at(box.max[axis], 0.3 * step)
-                                                           : at(box.max[axis] + 0.25 * step, 0)});
-  });
-  return {object: lines(ends.map(x => x.toArray()), '#7a8794'), labels};
+    names.push({text: `${axis}, m`, place: axis === 'y' ? at(box.max[axis] + 0.25 * step, 0)
+                                                          : at(box.max[axis], 0.3 * step)});
+  }
+  return {object: lines(ends.map(x => x.toArray()), '#7a8794'), labels: [...names, ...ticks]};
 }
 
 // Layers that can be hidden: {key, name, object, isOn}.

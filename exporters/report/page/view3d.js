@@ -84,14 +84,8 @@ class View3D {
   }
 
   makeScene(data) {
-    this.corners = this.markers.flatMap(marker => marker.corners).map(x => new THREE.Vector3(...x));
-    const box = new THREE.Box3().setFromPoints(this.corners);
-    const size = box.getSize(new THREE.Vector3()).length();
-    // The sail fills the view; a hull below it may be cut off.
-    const sails = (data.surfaces || []).filter(surface => surface.is_sail).map(({part}) => part);
-    const ofSails = this.markers.filter(marker => sails.includes(marker.part));
-    this.main = (ofSails.length > 0 ? ofSails : this.markers).flatMap(marker => marker.corners)
-        .map(x => new THREE.Vector3(...x));
+    Object.assign(this, framing(this.markers, data.surfaces || []));
+    const size = sizeOf(this.all);
     // Cameras can be far away; a 24-bit depth buffer allows this ratio.
     for (const camera of Object.values(this.cameras)) Object.assign(camera, {near: size / 500, far: size * 200});
     this.scene = new THREE.Scene();
@@ -99,6 +93,7 @@ class View3D {
     this.mesh = markerMesh(this.markers);
     this.layers[0].object.add(this.mesh, markerBacks(this.mesh));
     const axes = boxAxes(this.main);
+    this.main.push(...axes.labels.map(({place}) => place));  // so that none is cut off
     this.axes = {key: 'axes', name: 'axes', object: axes.object, isOn: true, labels: axes.labels};
     this.layers.push(this.axes);
     byId('view_axes').append(...axes.labels.map(({text}) => element('span', {textContent: text})));
@@ -115,15 +110,14 @@ class View3D {
   // Azimuth to the right of the front view and elevation above the horizon, degrees. All points fit at
   // a zoom of 1.
   setView(azimuth, elevation, zoom = 1, points = this.main) {
-    const box = new THREE.Box3().setFromPoints(points);
-    this.controls.target.copy(box.getCenter(new THREE.Vector3()));
+    this.controls.target.copy(boxOf(points).getCenter(new THREE.Vector3()));
     this.place(azimuth, elevation, 1);
     const turned = this.camera.quaternion.clone().inverse();
     const distances = points.map(point => {
       const x = point.clone().sub(this.controls.target).applyQuaternion(turned);
       return x.z + 1.08 * Math.max(Math.abs(x.y), Math.abs(x.x) / this.aspect) / this.tangent;
     });
-    this.place(azimuth, elevation, Math.max(...distances) / zoom);
+    this.place(azimuth, elevation, distances.reduce((a, b) => Math.max(a, b)) / zoom);
   }
 
   // Places the camera around the target at this distance.
@@ -144,7 +138,7 @@ class View3D {
         .map(image => new THREE.Vector3(...image.centre));
     const layer = this.layers.find(({key}) => key === 'cameras');
     if (layer) layer.isOn = layer.box.checked = true;
-    this.setView(20, 15, 1, [...this.corners, ...cameras]);
+    this.setView(20, 15, 1, [...this.all, ...cameras]);
   }
 
   // Rotates the current view, degrees.
@@ -202,11 +196,19 @@ class View3D {
     return canvas;
   }
 
+  // A label that would touch one before it is left out: where an axis points at the viewer, its ticks
+  // stand in one place.
   placeAxes() {
+    const shown = [];
     this.axes.labels.forEach(({place}, i) => {
       const label = byId('view_axes').children[i];
       label.hidden = !this.axes.isOn;
-      if (!label.hidden) this.placeLabel(label, place);
+      if (label.hidden) return;
+      this.placeLabel(label, place);
+      const touches = other => Math.abs(other.at[1] - label.at[1]) < 12 && Math.abs(other.at[0] - label.at[0]) <
+          3.5 * (other.textContent.length + label.textContent.length) + 4;
+      label.hidden = shown.some(touches);
+      if (!label.hidden) shown.push(label);
     });
   }
 
@@ -225,7 +227,8 @@ class View3D {
 
   colourBy(colouring) {
     colourMarkers(this.mesh, this.markers, colouring);
-    byId('legend').replaceChildren(...colouring.legend());
+    byId('legend').replaceChildren(...colouring.legend(), ...(this.outside.length === 0 ? [] : [element(
+        'span', {className: 'quiet'}, `not in the first view: ${this.outside.join(', ')} ("All cameras" shows all)`)]));
     this.render();
   }
 

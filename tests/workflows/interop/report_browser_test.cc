@@ -1,5 +1,7 @@
 // report.html in a real browser: headless Chromium, which draws WebGL in software.
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -178,6 +180,80 @@ TEST_F(ReportBrowser, TheViewTurns) {
   EXPECT_EQ(PartThatDiffers(front(head), turned(head)), 0);
   // Markers of the first part are there, seen from the front.
   EXPECT_GT(PartOfColour(front, {0xb2, 0x72, 0x00}), 0.01);
+}
+
+// The example with its lowest row of markers as a hull, lower by this many heights of the sail.
+std::string PageWithHull(double drop) {
+  constexpr int kNumColumns = 13;
+  ReportExample example = MakeReportExample(10, 5);
+  std::vector<ShapeMarker>& markers = example.shape.markers;
+  const auto height_m = [](const ShapeMarker& marker) { return marker.x_in_shape_m[0]->z(); };
+  std::vector<double> heights_m;
+  for (const ShapeMarker& marker : markers) heights_m.push_back(height_m(marker));
+  std::sort(heights_m.begin(), heights_m.end());
+  MarkerShape sail;
+  for (ShapeMarker& marker : markers) {
+    if (height_m(marker) >= heights_m[kNumColumns]) {
+      sail.markers.push_back(marker);
+      continue;
+    }
+    marker.part = "hull";
+    for (auto& x : marker.x_in_shape_m) x->z() -= drop * (heights_m.back() - heights_m.front());
+  }
+  ReportInput input = example.Input();
+  input.frame = ReportFrame{"upright", Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY()};
+  input.surfaces = {SurfaceThrough(sail)};
+  std::ostringstream page;
+  WriteReport(input, page);
+  return page.str();
+}
+
+// Places of the labels of the axes that are shown, px.
+std::vector<cv::Point2d> AxisLabels(const std::string& dom) {
+  const std::size_t begin = dom.find("id=\"view_axes\"");
+  const std::string spans = dom.substr(begin, dom.find("</div>", begin) - begin);
+  const std::regex label(
+      "<span style=\"transform: translate\\((-?[0-9.]+)px, (-?[0-9.]+)px\\)[^\"]*\">");
+  std::vector<cv::Point2d> places;
+  for (std::sregex_iterator it(spans.begin(), spans.end(), label), end; it != end; ++it) {
+    places.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  }
+  return places;
+}
+
+TEST_F(ReportBrowser, TheFirstViewHoldsAllThatItsLegendLists) {
+  const cv::Scalar of_hull(0xb2, 0x72, 0x00);  // BGR
+  WriteTextFile(*dir_ / "near.html", PageWithHull(0.3));
+  WriteTextFile(*dir_ / "far.html", PageWithHull(5));
+  const std::string note = "not in the first view: hull (\"All cameras\" shows all)";
+  const std::string near = Open("near.html", {"--dump-dom"}).out;
+  const std::string far = Open("far.html", {"--dump-dom"}).out;
+  EXPECT_THAT(near.substr(0, near.find("<script")), Not(HasSubstr(note)));
+  EXPECT_THAT(far.substr(0, far.find("<script")), HasSubstr(note));
+  const cv::Mat near_picture = Screenshot("near.html", 1280, 1500, "near.png");
+  EXPECT_GT(PartOfColour(near_picture, of_hull), 0.0005);
+  // The sail would be tiny beside a hull that is far away; the swatch of the legend is left.
+  EXPECT_LT(PartOfColour(Screenshot("far.html", 1280, 1500, "far.png"), of_hull), 0.0002);
+}
+
+TEST_F(ReportBrowser, LabelsOfTheAxesStandApartInTheView) {
+  WriteTextFile(*dir_ / "axes.html", PageWithHull(0.3));
+  for (const char* view : {"", "#azimuth=0&elevation=0", "#azimuth=90&elevation=0"}) {
+    const std::string dom =
+        Open(std::string("axes.html") + view, {"--dump-dom", "--window-size=1280,1500"}).out;
+    const std::vector<cv::Point2d> labels = AxisLabels(dom);
+    EXPECT_GT(labels.size(), 5u) << view;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      EXPECT_GT(std::min(labels[i].x, labels[i].y), 6) << view;
+      EXPECT_LT(labels[i].y, 614) << view;  // of 620
+      for (std::size_t j = 0; j < i; ++j) {
+        // In the first view, none stands beside another one either, as of two axes.
+        const double least_x = *view == '\0' ? 40 : 11;
+        const cv::Point2d apart = labels[i] - labels[j];
+        EXPECT_TRUE(std::abs(apart.x) > least_x || std::abs(apart.y) >= 12) << view << labels[i];
+      }
+    }
+  }
 }
 
 TEST_F(ReportBrowser, ColoursFollowTheSwitch) {
