@@ -86,7 +86,7 @@ house_folder(exporters/exchange PUBLIC
 house_folder(exporters/datum PUBLIC
   known_points known_points_report)
 house_folder(exporters/design PUBLIC
-  mesh_reader)
+  marker_distance mesh_distance mesh_reader)
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics round_number scale_audit scale_audit_report scale_csv)
 house_folder(exporters/surface PUBLIC
@@ -96,7 +96,7 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC
-  comparison comparison_ply comparison_sigma mesh_distance section_comparison shape_comparison)
+  comparison comparison_ply comparison_sigma section_comparison shape_comparison)
 house_folder(exporters/report PUBLIC
   camera_key_numbers html_page report_assets report_data report_sail report_writer verdict)
 house_folder(exporters/comparison_page PUBLIC

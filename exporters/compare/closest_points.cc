@@ -21,7 +21,7 @@ constexpr std::size_t kNumFineStarts = 4;
 constexpr double kTrim = 0.8;         // share of the points by which poses are compared
 constexpr double kTukey = 4.685;      // 95 % efficiency for normal noise (Huber, 1981)
 constexpr double kFloor = 1e-9;       // of the diagonal: distances below this are zero
-constexpr double kConverged = 1e-11;  // of the diagonal, a step
+constexpr double kConverged = 1e-8;   // of the diagonal, a step: 50 nm on a sail of 5 m
 constexpr double kMaxTurn_rad = 0.5;  // of one step
 
 Points Thinned(const Points& points, std::size_t max_num) {
@@ -43,11 +43,32 @@ double TrimmedRms(const std::vector<PointResidual>& residuals) {
   return Rms(distances_m);
 }
 
-// One Gauss-Newton step; returns how far it moves the points at most. Nearest points and weights
-// change with every step, so that MinimizeSquares() has no cost by which to judge it: with damping,
-// fits from far away ended in worse poses.
+using Motion = Eigen::Matrix<double, 6, 1>;  // rotation times the radius of the points, translation
+
+// The share of each step that is taken. A point whose foot changes from one triangle to the next
+// finds another normal there, and whole steps can go round in circles of a few hundredths of a
+// millimetre for ever. A step back halves the share, and steps in one direction restore it (like
+// Rprop; Riedmiller and Braun, 1993).
+class StepShare {
+ public:
+  double Next(const Motion& motion) {
+    constexpr double kGrowth = 1.3;
+    share_ = motion.dot(last_) < 0 ? share_ / 2 : std::min(1.0, kGrowth * share_);
+    last_ = motion;
+    return share_;
+  }
+
+ private:
+  Motion last_ = Motion::Zero();
+  double share_ = 1.0;
+};
+
+// One Gauss-Newton step, or the part of it that `share` allows (null for all); returns how far it
+// moves the points at most. Nearest points and weights change with every step, so that
+// MinimizeSquares() has no cost by which to judge it: with damping, fits from far away ended in
+// worse poses.
 double Step(const std::vector<PointResidual>& residuals, const std::vector<double>& weights,
-            Rigid3* pose) {
+            StepShare* share, Rigid3* pose) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (const PointResidual& r : residuals) center += r.x_m / static_cast<double>(residuals.size());
   double radius_m = 0.0;
@@ -62,8 +83,9 @@ double Step(const std::vector<PointResidual>& residuals, const std::vector<doubl
   }
   // Keeps motions that the surface does not determine at zero and hardly changes the others.
   equations.AddToDiagonal(1e-9 * equations.hessian().trace());
-  const auto motion = SolveDamped(equations, 0.0);
+  auto motion = SolveDamped(equations, 0.0);
   if (!motion) return 0.0;
+  if (share != nullptr) *motion *= share->Next(*motion);
   const Eigen::Vector3d turn = motion->head<3>() / radius_m;
   const double angle = std::min(turn.norm(), kMaxTurn_rad);
   const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
@@ -75,8 +97,10 @@ double Step(const std::vector<PointResidual>& residuals, const std::vector<doubl
 // Alternates between weights and one step of least squares.
 SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
                     bool is_fine, int num_iterations) {
-  SurfacePose best{start, 0.0, false};
+  SurfacePose best;
+  best.pose = start;
   Rigid3 pose = start;
+  StepShare share;
   for (int i = 0;; ++i) {
     const std::vector<PointResidual> residuals = ComputeResiduals(points, pose, mesh);
     const double trimmed_rms_m = TrimmedRms(residuals);
@@ -89,7 +113,8 @@ SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3
     const bool is_robust = is_fine && EnoughOverSurface(residuals);
     const std::vector<double> weights = is_robust ? TukeyWeights(residuals, ZeroDistance_m(mesh))
                                                   : std::vector<double>(residuals.size(), 1.0);
-    best.has_converged = Step(residuals, weights, &pose) < kConverged * mesh.Diagonal_m();
+    best.last_step_m = Step(residuals, weights, is_fine ? &share : nullptr, &pose);
+    best.has_converged = best.last_step_m < kConverged * mesh.Diagonal_m();
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_distance.h"
 #include "importer/geometry/rigid3.h"
 
 namespace velamap {
@@ -37,6 +37,7 @@ struct SurfacePose {
   Rigid3 pose;
   double trimmed_rms_m = 0.0;  // of the smallest 80 % of the squared distances
   bool has_converged = false;
+  double last_step_m = 0.0;  // how far the last iteration moved the points at most
 };
 
 // Fits the points from several starts: the pose as it is and, unless `starts_as_is`, the 24

@@ -83,12 +83,12 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
 Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const MeshDistance& reference, const Layout& layout,
                    const ComparisonOptions& options) {
-  ShapeDeviation deviation =
-      CompareWithMesh(shape, reference, layout, options.alignment, options.part, options.edge);
+  ShapeDeviation deviation = CompareWithMesh(shape, reference, layout, options.alignment,
+                                             options.part, options.edge, options.surface_sigma_m);
   Comparison comparison = CompareAligned(name, std::move(deviation), reference, layout, options);
   if (comparison.has_layout) {
     comparison.sections =
-        CompareSections(shape, reference, comparison.deviation, layout, options.part);
+        CompareSectionsOfDesign(shape, comparison.deviation, layout, options.part);
   }
   return comparison;
 }

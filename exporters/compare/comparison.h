@@ -18,7 +18,8 @@ struct ComparisonOptions {
   AlignmentOptions alignment;
   EdgeOptions edge;
   GridOptions grid;
-  std::string part;  // empty for all
+  std::string part;              // empty for all
+  double surface_sigma_m = 0.0;  // of a surface as the reference, see CompareWithMesh()
   bool with_deflections = false;
 };
 

@@ -122,6 +122,9 @@ void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
     metrics.push_back({"only_in_shape_ids", deviation.only_in_shape});
     metrics.push_back({"only_in_reference_ids", deviation.only_in_reference});
   }
+  if (deviation.surface_sigma_m > 0) {
+    metrics.push_back({"reference_sigma_mm", kMmPerM * deviation.surface_sigma_m});
+  }
   metrics.push_back({"distance_mm", InMm(deviation.distance_m)});
   if (!is_against_surface) metrics.push_back({"difference_mm", InMm(deviation.difference_m)});
   if (has_sigma) {

@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/layout/layout.h"

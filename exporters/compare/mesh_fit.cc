@@ -38,8 +38,10 @@ void AddNotes(const std::vector<SurfacePose>& fits, double zero_m, Alignment* al
   const SurfacePose& best = fits.front();
   if (!best.has_converged) {
     alignment->notes.push_back(
-        fmt::format("the fit did not converge in {} iterations; start closer to the solution",
-                    kMaxFitIterations));
+        fmt::format("the fit did not converge in {} iterations, the last of which moved the shape "
+                    "by {:.2g} mm; if that matters, move the shape closer to the surface and give "
+                    "--align_start as_is",
+                    kMaxFitIterations, kMmPerM * best.last_step_m));
   }
   const int num_free = AlignmentSensitivity(*alignment).NumFreeDirections();
   if (num_free > 0) {
@@ -96,6 +98,7 @@ Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
   if (options.method == AlignmentMethod::kNone) {
     Alignment alignment;
     alignment.description = "none; both frames are taken to be the same";
+    alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
     return alignment;
   }
   if (options.method != AlignmentMethod::kAuto && options.method != AlignmentMethod::kBestFit) {

@@ -5,8 +5,8 @@
 
 #pragma once
 
-#include "exporters/compare/mesh_distance.h"
 #include "exporters/compare/shape_alignment.h"
+#include "exporters/design/mesh_distance.h"
 #include "exporters/shape/marker_shape.h"
 
 namespace velamap {

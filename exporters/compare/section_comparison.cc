@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/compare/comparison_sigma.h"
 #include "exporters/datum/known_points.h"
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_transform.h"
@@ -169,18 +170,17 @@ const Section* FindSection(const SectionReport& report, const std::string& part,
   return it == report.sections.end() ? nullptr : &*it;
 }
 
-MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& deviation) {
+MarkerShape MarkersOnSurface(const ShapeDeviation& deviation) {
   MarkerShape moved;
   for (const MarkerDeviation& compared : deviation.markers) {
     if (!compared.is_over_surface) continue;
     ShapeMarker marker = *FindWholeMarker(deviation.aligned_shape, compared.marker_id);
     marker.sigma_m = {};
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
-      const MeshFoot foot = surface.Project(x);
-      x -= foot.distance_m * foot.normal;
+    if (deviation.surface_sigma_m > 0) {
+      marker.sigma_m.fill(Eigen::Vector3d::Constant(deviation.surface_sigma_m));
     }
-    marker.x_in_shape_m[0] = MeanOfCorners(marker);
+    // As a whole, because corners may lie far beyond the edge of the design.
+    for (auto& x : marker.x_in_shape_m) *x -= compared.distance_m * compared.normal;
     moved.markers.push_back(marker);
   }
   return moved;
@@ -192,11 +192,13 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
   return Compare(shape, reference, false, alignment, layout, part);
 }
 
-SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout,
-                                  const std::string& part) {
-  return Compare(shape, {MarkersOnSurface(reference, deviation), {}}, true, deviation.alignment,
-                 layout, part);
+SectionComparison CompareSectionsOfDesign(const UncertainShape& shape,
+                                          const ShapeDeviation& deviation, const Layout& layout,
+                                          const std::string& part) {
+  const MarkerShape on_surface = MarkersOnSurface(deviation);
+  const bool is_exact = !(deviation.surface_sigma_m > 0);
+  return Compare(shape, {on_surface, CovarianceFromSigmas(on_surface)}, is_exact,
+                 deviation.alignment, layout, part);
 }
 
 }  // namespace velamap

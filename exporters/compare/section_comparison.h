@@ -50,15 +50,15 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
                                   const Alignment& alignment, const Layout& layout,
                                   const std::string& part);
 
-// The whole markers over the surface, moved to their feet on it, without sigmas: where the same
-// markers would be on a sail of exactly this shape. In the frame of the surface.
-MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& deviation);
+// The whole markers over the surface, moved along its normal by their distance from it, with the
+// sigma of the surface: where the same markers would be on a sail of exactly this shape. In the
+// frame of the surface. `deviation` comes from CompareWithMesh().
+MarkerShape MarkersOnSurface(const ShapeDeviation& deviation);
 
-// Cuts the design through the feet of the markers on its surface, as if the same markers stuck to a
-// sail of exactly this shape. `deviation` comes from CompareWithMesh(); markers that are not over
-// the surface are missing.
-SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout,
-                                  const std::string& part);
+// Cuts the design through the markers on its surface, as if the same markers stuck to a sail of
+// exactly this shape. Markers that are not over the surface are missing.
+SectionComparison CompareSectionsOfDesign(const UncertainShape& shape,
+                                          const ShapeDeviation& deviation, const Layout& layout,
+                                          const std::string& part);
 
 }  // namespace velamap

@@ -11,6 +11,7 @@
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/mesh_fit.h"
+#include "exporters/design/marker_distance.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -44,10 +45,12 @@ MarkerShape OnPart(const MarkerShape& shape, const Layout& layout, const std::st
   return part.empty() ? shape : MarkersOnPart(shape, layout, part);
 }
 
-void SetSigma(const std::optional<Eigen::Matrix3d>& covariance_m2, MarkerDeviation* marker) {
+// `surface_sigma_m` is 0 for a shape as the reference, whose noise is in the covariance.
+void SetSigma(const std::optional<Eigen::Matrix3d>& covariance_m2, double surface_sigma_m,
+              MarkerDeviation* marker) {
   if (!covariance_m2) return;
   const double variance = marker->normal.dot(*covariance_m2 * marker->normal);
-  marker->sigma_m = std::sqrt(std::max(0.0, variance));
+  marker->sigma_m = std::hypot(std::sqrt(std::max(0.0, variance)), surface_sigma_m);
   if (*marker->sigma_m > 0) marker->significance = marker->distance_m / *marker->sigma_m;
   if (marker->difference_m) {
     marker->difference_sigma_m = covariance_m2->diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -184,7 +187,7 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
     result.distance_m = result.normal.dot(*result.difference_m);
     SetSigma(sensitivity.DifferenceCovariance(marker.marker_id, result.x_in_reference_m,
                                               shape.covariance, &reference.covariance),
-             &result);
+             0.0, &result);
     deviation.markers.push_back(std::move(result));
   }
   for (const ShapeMarker& marker : reference.shape.markers) {
@@ -206,16 +209,18 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
 
 ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& mesh,
                                const Layout& layout, const AlignmentOptions& options,
-                               const std::string& part, const EdgeOptions& edge) {
+                               const std::string& part, const EdgeOptions& edge,
+                               double surface_sigma_m) {
   edge.Check();
   ShapeDeviation deviation;
+  deviation.surface_sigma_m = surface_sigma_m;
   const MarkerShape compared = OnPart(shape.shape, layout, part);
   deviation.alignment = AlignToMesh(compared, mesh, options);
   const AlignmentSensitivity sensitivity(deviation.alignment);
   deviation.aligned_shape = Aligned(deviation.alignment.reference_from_shape, compared);
   for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
     if (!marker.IsWhole()) continue;
-    const MeshFoot foot = mesh.Project(*marker.x_in_shape_m[0]);
+    const MeshFoot foot = ProjectMarker(mesh, marker);
     MarkerDeviation result;
     result.marker_id = marker.marker_id;
     result.part = PartOf(marker, layout);
@@ -230,7 +235,7 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
     if (result.is_over_surface && !foot.IsOverSurface(mesh.Diagonal_m())) {
       ++deviation.num_beyond_edge;
     }
-    SetSigma(covariance_m2, &result);
+    SetSigma(covariance_m2, surface_sigma_m, &result);
     deviation.markers.push_back(std::move(result));
   }
   Summarize(layout, &deviation);

@@ -10,8 +10,8 @@
 
 #include <Eigen/Core>
 
-#include "exporters/compare/mesh_distance.h"
 #include "exporters/compare/shape_alignment.h"
+#include "exporters/design/mesh_distance.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/base/statistics.h"
 #include "importer/layout/layout.h"
@@ -35,7 +35,9 @@ struct MarkerDeviation {
   Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();  // centre in the aligned shape
   // Unit normal of the reference's marker, or of the surface at the nearest point.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double distance_m = 0.0;  // along the normal, positive on its side
+  // Along the normal, positive on its side. Of the centre from that of the reference's marker, or
+  // of the marker from the surface, see ProjectMarker().
+  double distance_m = 0.0;
   std::optional<double> sigma_m;
   std::optional<double> significance;  // distance / sigma, with the sign of the distance
   // Centre in the shape minus centre in the reference; only for two shapes.
@@ -67,7 +69,10 @@ struct ShapeDeviation {
   std::vector<MarkerDeviation> markers;  // whole markers (of both shapes), by id
   Statistics distance_m;                 // signed, without markers beside the surface
   Statistics difference_m;               // lengths of the vectors; only for two shapes
-  int num_significant = 0;               // above kSignificantSigmas
+  // Of the surface along its normal, which the sigmas of the markers include; 0 if it is exact or
+  // there is none.
+  double surface_sigma_m = 0.0;
+  int num_significant = 0;  // above kSignificantSigmas
   int num_with_sigma = 0;
   int num_beyond_edge = 0;            // beyond the edge of the surface, yet within reach
   int num_beside = 0;                 // beside the surface
@@ -87,11 +92,14 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
                                 const Layout& layout, const AlignmentOptions& options,
                                 const std::string& part = "");
 
-// Aligns and compares only the markers of `part` (all markers if it is empty). Throws the errors of
-// AlignToMesh(), and DataError if no whole marker lies over the surface.
+// Aligns and compares only the markers of `part` (all markers if it is empty). A surface that was
+// itself fitted to markers is known to `surface_sigma_m` along its normal; the one of a design is
+// exact. Throws the errors of AlignToMesh(), and DataError if no whole marker lies over the
+// surface.
 ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& mesh,
                                const Layout& layout, const AlignmentOptions& options,
-                               const std::string& part = "", const EdgeOptions& edge = {});
+                               const std::string& part = "", const EdgeOptions& edge = {},
+                               double surface_sigma_m = 0.0);
 
 // The factor, 1000 or 0.001, by which to multiply a mesh that was read in mm instead of m or the
 // other way round. Nothing unless the diagonals of shape and mesh differ by a factor above 100.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_distance.h"
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/base/statistics.h"

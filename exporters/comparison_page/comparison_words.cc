@@ -161,6 +161,12 @@ class Items {
   }
 
   void AddEdge() {
+    if (deviation_.surface_sigma_m > 0) {
+      Add(fmt::format(
+          "the sigmas include {:.2g} mm for the reference, because the markers that this "
+          "surface was fitted to lie off it by as much",
+          kMmPerM * deviation_.surface_sigma_m));
+    }
     if (deviation_.num_beyond_edge > 0) {
       Add(
           fmt::format("{} markers lie a little beyond the edge of the design; their distance is "

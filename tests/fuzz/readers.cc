@@ -155,6 +155,10 @@ const char* const kShape =
 
 const char* const kEdges = "edge,x,y,z\nluff,0,0,0\nluff,0,0,1\nleech,1,0,0\nleech,1,0.1,1\n";
 
+const char* const kResiduals =
+    "marker_id,line,u,v,distance,beyond_edge,is_used\n7,\"h,1\",0.25,0.5,-0.00125,0,1\n"
+    "9,,1,0.5,0.5,0.25,0\n";
+
 // ---- models and databases
 
 const SyntheticScene& Scene() {
@@ -304,6 +308,9 @@ const std::map<std::string, FuzzedReader>& FuzzedReaders() {
       {"edges_csv",
        {OfFile("edges.csv", [](const std::string& path) { ReadSurfaceEdges(path); }),
         Texts({kEdges})}},
+      {"residuals_csv",
+       {OfFile("residuals.csv", [](const std::string& path) { ReadSurfaceResidualRms(path); }),
+        Texts({kResiduals})}},
       {"model_binary", OfModel(ModelFormat::kBinary, kBinary)},
       {"model_text", OfModel(ModelFormat::kText, kText)},
       {"uncertainty",

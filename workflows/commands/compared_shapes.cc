@@ -8,9 +8,11 @@
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/shape_sigma.h"
+#include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/log.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
@@ -92,6 +94,22 @@ void CheckUnit(const std::string& path, const MeshReadOptions& options,
       fmt::format("{}; if its unit is {}, give --{} {}; if it is right as it is, --{} {}", what,
                   *factor > 1 ? "m" : "mm", unit_option, *factor > 1 ? "m" : "mm", unit_option,
                   DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
+}
+
+double SurfaceSigma(const std::string& path) {
+  const std::string stem = fs::path(path).stem().string(), fitted = "surface";
+  if (stem.compare(0, fitted.size(), fitted) != 0) return 0.0;
+  const fs::path residuals =
+      fs::path(path).parent_path() / (fitted + "_residuals" + stem.substr(fitted.size()) + ".csv");
+  if (!IsRegularFile(residuals)) return 0.0;
+  try {
+    const double sigma_m = ReadSurfaceResidualRms(residuals.string());
+    LogInfo("{}: known to {:.2g} mm, by {}", path, kMmPerM * sigma_m, residuals.string());
+    return sigma_m;
+  } catch (const InputError& error) {
+    LogWarning("the surface counts as exact: {}", error.what());
+    return 0.0;
+  }
 }
 
 void CheckFaces(const std::string& path, const MeshDistance& mesh) {

@@ -25,6 +25,11 @@ Option MeshUnitOption(const std::string& name, MeshReadOptions* options);
 void CheckUnit(const std::string& path, const MeshReadOptions& options,
                const std::string& unit_option, const MarkerShape& shape, const MeshDistance& mesh);
 
+// How well the surface in `path` is known, m: for a surface.step or another file of a surface that
+// velamap fitted, the root mean square of the surface_residuals.csv beside it, by which even the
+// markers of its own shape lie off it. 0 for any other surface.
+double SurfaceSigma(const std::string& path);
+
 // Warns of triangles that face opposite sides.
 void CheckFaces(const std::string& path, const MeshDistance& mesh);
 

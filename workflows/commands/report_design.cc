@@ -35,7 +35,7 @@ void FitDesign(const DesignOptions& options, const MeshDistance& design,
   CheckFaces(options.path, design);
   const ShapeDeviation deviation =
       CompareWithMesh({shape.shape, {}}, design, layout, {}, PartOfDesign(layout));
-  MarkerShape of_design = MarkersOnSurface(design, deviation);
+  MarkerShape of_design = MarkersOnSurface(deviation);
   MoveShape(Inverse(deviation.alignment.reference_from_shape), nullptr, &of_design);
   const SectionReport sections =
       ComputeSections(of_design, shape.frame, layout, nullptr, section_options);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_distance.h"
 #include "exporters/design/mesh_reader.h"
 #include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"

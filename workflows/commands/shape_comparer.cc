@@ -203,6 +203,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   for (const std::string& path : paths) {
     shapes.push_back(ReadUncertainShape(path, options.uncertainty_path, "--uncertainty_path"));
   }
+  ComparisonOptions comparison = options.comparison;
   std::optional<MeshDistance> mesh;
   if (IsMeshPath(reference_path)) {
     mesh.emplace(ReadMesh(reference_path, options.mesh));
@@ -210,6 +211,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
       CheckUnit(reference_path, options.mesh, "reference_unit", shape.shape, *mesh);
     }
     CheckFaces(reference_path, *mesh);
+    comparison.surface_sigma_m = SurfaceSigma(reference_path);
   } else {
     *reference = ReadUncertainShape(reference_path, options.reference_uncertainty_path,
                                     "--reference_uncertainty_path");
@@ -217,9 +219,8 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   std::vector<Comparison> series;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     try {
-      series.push_back(mesh
-                           ? Compare(names[i], shapes[i], *mesh, layout, options.comparison)
-                           : Compare(names[i], shapes[i], **reference, layout, options.comparison));
+      series.push_back(mesh ? Compare(names[i], shapes[i], *mesh, layout, comparison)
+                            : Compare(names[i], shapes[i], **reference, layout, comparison));
     } catch (const DataError& error) {
       if (shapes.size() == 1) throw;
       throw DataError(fmt::format("{}: {}", paths[i], error.what()));

@@ -59,6 +59,24 @@ ShapeMarker MakeMarker(int id, const std::string& part, const Eigen::Vector3d& c
 
 int SailId(int line, int place) { return 10 * (line + 1) + place + 1; }
 
+double PlaceToU(int place) { return 0.05 + 0.9 * place / (kNumOnLine - 1); }
+double LineToV(int line) { return line / (kNumLines - 1.0); }
+
+// The nearest point of the sail, from a place near it.
+Eigen::Vector3d FootOnSail(const Eigen::Vector3d& x, double u, double v) {
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Matrix<double, 3, 2> tangents;
+    tangents.col(0) = (SailPoint(u + kStep, v) - SailPoint(u - kStep, v)) / (2 * kStep);
+    tangents.col(1) = (SailPoint(u, v + kStep) - SailPoint(u, v - kStep)) / (2 * kStep);
+    const Eigen::Matrix2d normal = tangents.transpose() * tangents;
+    const Eigen::Vector2d move = normal.inverse() * (tangents.transpose() * (x - SailPoint(u, v)));
+    u += move[0];
+    v += move[1];
+  }
+  return SailPoint(u, v);
+}
+
 }  // namespace
 
 Layout BoatLayout() {
@@ -81,7 +99,7 @@ MarkerShape BoatShape(double sigma_m) {
   MarkerShape shape;
   for (int line = 0; line < kNumLines; ++line) {
     for (int place = 0; place < kNumOnLine; ++place) {
-      const double u = 0.05 + 0.9 * place / (kNumOnLine - 1), v = line / (kNumLines - 1.0);
+      const double u = PlaceToU(place), v = LineToV(line);
       shape.markers.push_back(
           MakeMarker(SailId(line, place), "sail", SailPoint(u, v), FrameAt(u, v), sigma_m));
     }
@@ -90,6 +108,20 @@ MarkerShape BoatShape(double sigma_m) {
     const Eigen::Vector3d center(0.8 * (i % 3), i < 3 ? -0.2 : 0.3, -1.0 - 0.1 * (i % 2));
     shape.markers.push_back(
         MakeMarker(120 + i, "hull", center, Eigen::Matrix3d::Identity(), sigma_m));
+  }
+  return shape;
+}
+
+MarkerShape BentBoatShape(double sigma_m) {
+  MarkerShape shape = BoatShape(sigma_m);
+  for (ShapeMarker& marker : shape.markers) {
+    if (marker.part != "sail") continue;
+    const double u = PlaceToU(marker.marker_id % 10 - 1), v = LineToV(marker.marker_id / 10 - 1);
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
+      x = FootOnSail(x, u, v);
+    }
+    marker.x_in_shape_m[0] = MeanOfCorners(marker);
   }
   return shape;
 }

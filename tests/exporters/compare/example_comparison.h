@@ -21,6 +21,10 @@ Layout BoatLayout();
 // sigma if `sigma_m` is positive.
 MarkerShape BoatShape(double sigma_m = 0.0);
 
+// The same with the markers of the sail stuck to it: their corners lie on its surface, and their
+// centres, which are the means of the corners, up to 2 mm beside it.
+MarkerShape BentBoatShape(double sigma_m = 0.0);
+
 // The surface of the sail's markers up to `margin_m` beyond the outer centres.
 TriangleMesh SailMesh(double margin_m = 0.3);
 

@@ -177,6 +177,28 @@ TEST(ComparisonSections, OnlyThePartThatIsAskedForIsCompared) {
   }
 }
 
+// The corners of the outer markers lie beyond the edge of the design, where it has no surface.
+TEST(ComparisonSections, ASailOfTheDesignsShapeHasItsSectionsUpToTheEdge) {
+  const MeshDistance design(SailMesh(0.0));
+  ComparisonOptions options;
+  options.alignment.method = AlignmentMethod::kNone;
+  const UncertainShape sail = WithSigmas(BentBoatShape(0.0005));
+  const SectionComparison sections =
+      velamap::Compare("trim", sail, design, BoatLayout(), options).sections;
+  ASSERT_EQ(sections.differences.size(), 5u * 6);
+  for (const SectionDifference& d : sections.differences) {
+    const double limit = d.number == "chord_mm" ? 0.1 : 0.02;  // mm, %, degrees
+    EXPECT_NEAR(d.Difference(), 0.0, limit) << d.section << " " << d.number;
+    EXPECT_FALSE(d.IsSignificant()) << d.section << " " << d.number;
+  }
+  // A design that is known less well is no reason for more significant numbers.
+  options.surface_sigma_m = 0.001;
+  const SectionComparison uncertain =
+      velamap::Compare("trim", sail, design, BoatLayout(), options).sections;
+  EXPECT_GT(*Find(uncertain, "h2", "camber_percent").sigma,
+            1.5 * *Find(sections, "h2", "camber_percent").sigma);
+}
+
 TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {
   const MarkerShape boat = BoatShape();
   const SectionComparison comparison =

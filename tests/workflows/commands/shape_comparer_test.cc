@@ -127,6 +127,24 @@ TEST_F(ShapeComparerTest, ADesignAsMesh) {
   ExpectError(Compare("design.ply", {"--align", "none"}), 1, "none of the 36 whole markers");
 }
 
+// The markers of the shape itself lie off a fitted surface by its residuals, which say how well it
+// is known.
+TEST_F(ShapeComparerTest, ASurfaceOfVelamapIsAsGoodAsItsResiduals) {
+  WriteMesh("surface_2.ply", 1.0);
+  const std::vector<std::string> of_sail = {"--layout_path", path("layout.yml"), "--part", "sail"};
+  EXPECT_THAT(Compare("surface_2.ply", of_sail).out, Not(HasSubstr("reference_sigma_mm")));
+  const std::string header = "marker_id,line,u,v,distance,beyond_edge,is_used\n";
+  WriteTextFile(dir_ / "surface_residuals_2.csv", header + "11,h1,0,0,0.003,0,1\n");
+  const ProgramRun run = Compare("surface_2.ply", of_sail);
+  EXPECT_THAT(run.out, HasSubstr("reference_sigma_mm: 3\n"));
+  EXPECT_THAT(run.err, HasSubstr("surface_2.ply: known to 3 mm, by "));
+  WriteTextFile(dir_ / "surface_residuals_2.csv", header + "11,h1,0,0,far,0,1\n");
+  const ProgramRun bad = Compare("surface_2.ply", of_sail);
+  EXPECT_EQ(bad.exit_code, 0);
+  EXPECT_THAT(bad.out, Not(HasSubstr("reference_sigma_mm")));
+  EXPECT_THAT(bad.err, HasSubstr("the surface counts as exact: "));
+}
+
 TEST_F(ShapeComparerTest, AFolderWithAPageAndTheDeflections) {
   const ProgramRun run =
       Compare("b/shape", {"--layout_path", path("layout.yml"), "--comparison_path",

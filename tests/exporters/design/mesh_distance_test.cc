@@ -1,4 +1,4 @@
-#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_distance.h"
 
 #include <cmath>
 #include <random>
