@@ -99,13 +99,13 @@ constexpr double kEdge_mm = 0.5;  // width of the sail's outline
 // Moves a text that the foot would strike through below it, where nothing is behind it.
 void MoveOffFoot(const Foot& foot, Text* text) {
   constexpr double kLetter = 0.66, kAscent = 0.76, kDescent = 0.24;  // of the font size
-  constexpr double kGap_mm = 0.4;
+  constexpr double kFromEdge_mm = 0.4;
   const double half_width_mm =
       0.5 * kLetter * text->size_mm * static_cast<double>(text->text.size());
   const double x_mm = text->position_mm.x();
   const auto [highest_mm, lowest_mm] =
       std::minmax({foot.At(x_mm - half_width_mm), foot.At(x_mm + half_width_mm)});
-  const double from_edge_mm = 0.5 * kEdge_mm + kGap_mm;
+  const double from_edge_mm = 0.5 * kEdge_mm + kFromEdge_mm;
   double& baseline_mm = text->position_mm.y();
   if (baseline_mm + kDescent * text->size_mm + from_edge_mm <= highest_mm) return;
   baseline_mm = lowest_mm + from_edge_mm + kAscent * text->size_mm;
