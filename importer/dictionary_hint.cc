@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/log.h"
-#include "importer/refine/marker_detector.h"
+#include "importer/detect/marker_search.h"
 
 namespace velamap {
 namespace {
@@ -95,7 +95,6 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
                                                 const ArucoDetectionOptions& options) {
   ArucoDetectionOptions strict = options;
   strict.error_correction_rate = 0.0;
-  strict.corner_refinement = CornerRefinement::kNone;
   std::map<std::pair<std::string, bool>, Found> found_by_choice;
   bool convinced = false;
   int num_images = 0;
@@ -111,7 +110,8 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
       for (const bool inverted : {false, true}) {
         strict.inverted = inverted;
         Found& found = found_by_choice[{family, inverted}];
-        for (const MarkerDetection& marker : DetectMarkers(gray, dictionary, border_bits, strict)) {
+        for (const MarkerQuad& marker :
+             SearchMarkersAtFirstLook(gray, dictionary, border_bits, strict)) {
           ++found.num_of_id[marker.marker_id];
         }
         convinced |= found.NumMarkers() >= kConvincingNumMarkers && !MayBeChance(family, found);

@@ -252,6 +252,13 @@ std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dic
   return SearchMarkers(gray, dictionary, border_bits, options, {{0, 0, gray.cols, gray.rows}});
 }
 
+std::vector<MarkerQuad> SearchMarkersAtFirstLook(const cv::Mat& gray, const Dictionary& dictionary,
+                                                 int border_bits,
+                                                 const ArucoDetectionOptions& options) {
+  const Search search = MakeSearch(gray, dictionary, border_bits, options);
+  return SearchRegions(search, {search.Image()}, false);
+}
+
 std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
                                               int border_bits,
                                               const ArucoDetectionOptions& options) {

@@ -24,6 +24,12 @@ inline constexpr int kSearchReachPx = 6 + 4;
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options);
 
+// The same without a second look at outlines whose code cannot be read (second_look.h): for the
+// many dictionaries that may be tried, of which all but one are wrong.
+std::vector<MarkerQuad> SearchMarkersAtFirstLook(const cv::Mat& gray, const Dictionary& dictionary,
+                                                 int border_bits,
+                                                 const ArucoDetectionOptions& options);
+
 // The same at half the resolution, in a quarter of the time: finds large markers, to a few pixels.
 std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
                                               int border_bits,

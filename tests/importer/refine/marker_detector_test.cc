@@ -114,7 +114,7 @@ TEST(SuggestDictionaries, NamesTheSmallestDictionaryAndThePolarity) {
   for (const bool inverted : {false, true}) {
     const std::vector<DictionaryHint> hints =
         SuggestDictionaries({inverted ? cv::Mat(255 - gray) : gray}, 1, {});
-    ASSERT_EQ(hints.size(), 1u);
+    ASSERT_EQ(hints.size(), 1u) << DescribeHints(hints);
     EXPECT_EQ(hints[0].dictionary, "DICT_5X5_100");
     EXPECT_EQ(hints[0].inverted, inverted);
     EXPECT_EQ(hints[0].num_markers, 3);
@@ -140,7 +140,7 @@ TEST(SuggestDictionaries, AFalseIdDoesNotAskForALargerDictionary) {
   }
   const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {1040, 560}, drawn));
   const std::vector<DictionaryHint> hints = SuggestDictionaries({gray}, 1, {});
-  ASSERT_EQ(hints.size(), 1u);
+  ASSERT_EQ(hints.size(), 1u) << DescribeHints(hints);
   EXPECT_EQ(hints[0].dictionary, "DICT_4X4_250");
   EXPECT_EQ(hints[0].num_markers, 24);
   EXPECT_THAT(DescribeHints(hints), testing::HasSubstr("change its key `dictionary`"));
