@@ -44,22 +44,24 @@ std::string NameOfShape(const std::string& path) {
   return folder.has_filename() ? folder.filename().string() : file;
 }
 
-// All but the sections. `reference` is a shape or a design.
+const MarkerShape& PlacesOf(const UncertainShape& reference) { return reference.shape; }
+const MeshDistance& PlacesOf(const MeshDistance& reference) { return reference; }
+
+// All but the sections. `covariance` is of the shape; `reference` is a shape or a design.
 template <typename Reference>
 Comparison CompareAligned(const std::string& name, ShapeDeviation deviation,
-                          const Reference& reference, const Layout& layout,
-                          const ComparisonOptions& options) {
+                          const PointCovariance& covariance, const Reference& reference,
+                          const Layout& layout, const ComparisonOptions& options) {
   Comparison comparison;
   comparison.name = name;
   comparison.deviation = std::move(deviation);
   comparison.has_layout = layout.HasMarkers();
   if (!comparison.has_layout) return comparison;
-  const MarkerShape& aligned_shape = comparison.deviation.aligned_shape;
-  comparison.surfaces =
-      CompareSurfaces(aligned_shape, reference, layout, options.part, options.edge);
+  comparison.surfaces = CompareSurfaces(comparison.deviation.aligned_shape, PlacesOf(reference),
+                                        layout, options.part, options.edge);
   if (options.with_deflections && FirstPartWithLines(layout) != nullptr) {
-    comparison.deflections = ComputeDeflections(aligned_shape, reference, layout, options.grid,
-                                                options.part, options.edge);
+    comparison.deflections = ComputeDeflections(comparison.deviation, covariance, reference, layout,
+                                                options.grid, options.part, options.edge);
   }
   return comparison;
 }
@@ -72,7 +74,7 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
   ShapeDeviation deviation =
       CompareWithShape(shape, reference, layout, options.alignment, options.part);
   Comparison comparison =
-      CompareAligned(name, std::move(deviation), reference.shape, layout, options);
+      CompareAligned(name, std::move(deviation), shape.covariance, reference, layout, options);
   if (comparison.has_layout) {
     comparison.sections =
         CompareSections(shape, reference, comparison.deviation.alignment, layout, options.part);
@@ -85,7 +87,8 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const ComparisonOptions& options) {
   ShapeDeviation deviation = CompareWithMesh(shape, reference, layout, options.alignment,
                                              options.part, options.edge, options.surface_sigma_m);
-  Comparison comparison = CompareAligned(name, std::move(deviation), reference, layout, options);
+  Comparison comparison =
+      CompareAligned(name, std::move(deviation), shape.covariance, reference, layout, options);
   if (comparison.has_layout) {
     comparison.sections =
         CompareSectionsOfDesign(shape, comparison.deviation, layout, options.part);

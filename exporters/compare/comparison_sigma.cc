@@ -1,7 +1,6 @@
 #include "exporters/compare/comparison_sigma.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -45,17 +44,13 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   return block;
 }
 
-std::vector<PointGradient> RotatedInto(
-    const Eigen::Quaterniond& target_from_reference,
-    const std::array<std::map<CornerId, Eigen::Vector3d>, 3>& by) {
-  std::vector<PointGradient> gradients;
-  for (const auto& by_corner : by) {
-    gradients.emplace_back();
-    for (const auto& [corner, gradient] : by_corner) {
-      gradients.back().emplace_back(Point3DIdFromCorner(corner), target_from_reference * gradient);
-    }
+PointGradient RotatedInto(const Eigen::Quaterniond& target_from_reference,
+                          const std::map<CornerId, Eigen::Vector3d>& by_corner) {
+  PointGradient rotated;
+  for (const auto& [corner, gradient] : by_corner) {
+    rotated.emplace_back(Point3DIdFromCorner(corner), target_from_reference * gradient);
   }
-  return gradients;
+  return rotated;
 }
 
 bool HasAllCorners(const PointCovariance& covariance,
@@ -122,17 +117,17 @@ AlignmentSensitivity::Vector6d AlignmentSensitivity::MotionGradient(
 }
 
 std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
-    int marker_id, const Eigen::Vector3d& center_in_reference_m,
-    const Eigen::Vector3d& direction) const {
+    const PlacedMarker& marker, const Eigen::Vector3d& direction) const {
   std::map<CornerId, Eigen::Vector3d> sum;
   const auto add = [&](const CornerId& corner, const Eigen::Vector3d& gradient) {
     const auto [it, is_new] = sum.emplace(corner, gradient);
     if (!is_new) it->second += gradient;
   };
   for (int corner = 1; corner <= kNumCorners; ++corner) {
-    add({marker_id, corner}, direction / kNumCorners);
+    add({marker.marker_id, corner}, direction / kNumCorners);
   }
-  const Vector6d by_motion = inverse_normal_ * MotionGradient(center_in_reference_m, direction);
+  const Vector6d by_motion =
+      inverse_normal_ * MotionGradient(marker.center_in_reference_m, direction);
   for (const AlignmentEquation& equation : alignment_.equations) {
     const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
     add(equation.corner, -equation.weight * by_motion.dot(row) * equation.direction);
@@ -140,23 +135,33 @@ std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
   return sum;
 }
 
-std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
-    int marker_id, const Eigen::Vector3d& center_in_reference_m, const PointCovariance& shape,
-    const PointCovariance* reference) const {
-  std::array<std::map<CornerId, Eigen::Vector3d>, 3> by_axis;
-  for (int axis = 0; axis < 3; ++axis) {
-    by_axis[static_cast<std::size_t>(axis)] =
-        CenterGradient(marker_id, center_in_reference_m, Eigen::Vector3d::Unit(axis));
-  }
-  if (!HasAllCorners(shape, by_axis[0])) return std::nullopt;
-  Eigen::Matrix3d covariance_m2 = JointCovarianceOf(
-      shape, RotatedInto(alignment_.reference_from_shape.rotation.conjugate(), by_axis));
-  if (reference == nullptr) return covariance_m2;
-  if (!HasAllCorners(*reference, by_axis[0])) return std::nullopt;
+std::optional<Eigen::MatrixXd> AlignmentSensitivity::JointCovariance(
+    const std::vector<PlacedMarker>& markers, ComparedShape whose,
+    const PointCovariance& covariance) const {
   // The reference's errors enter with the opposite sign, which does not change the covariance.
-  covariance_m2 +=
-      JointCovarianceOf(*reference, RotatedInto(Eigen::Quaterniond::Identity(), by_axis));
-  return covariance_m2;
+  const Eigen::Quaterniond target_from_reference =
+      whose == ComparedShape::kShape ? alignment_.reference_from_shape.rotation.conjugate()
+                                     : Eigen::Quaterniond::Identity();
+  std::vector<PointGradient> gradients;
+  for (const PlacedMarker& marker : markers) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto by_corner = CenterGradient(marker, Eigen::Vector3d::Unit(axis));
+      if (!HasAllCorners(covariance, by_corner)) return std::nullopt;
+      gradients.push_back(RotatedInto(target_from_reference, by_corner));
+    }
+  }
+  return JointCovarianceOf(covariance, gradients);
+}
+
+std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
+    const PlacedMarker& marker, const PointCovariance& shape,
+    const PointCovariance* reference) const {
+  const auto of_shape = JointCovariance({marker}, ComparedShape::kShape, shape);
+  if (!of_shape) return std::nullopt;
+  if (reference == nullptr) return Eigen::Matrix3d(*of_shape);
+  const auto of_reference = JointCovariance({marker}, ComparedShape::kReference, *reference);
+  if (!of_reference) return std::nullopt;
+  return Eigen::Matrix3d(*of_shape + *of_reference);
 }
 
 }  // namespace velamap

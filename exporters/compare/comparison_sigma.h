@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -20,6 +21,15 @@ namespace velamap {
 // and long waves of the shape, are missing. Points without a sigma are left out.
 PointCovariance CovarianceFromSigmas(const MarkerShape& shape);
 
+// A whole marker of the shape in the frame of the reference.
+struct PlacedMarker {
+  int marker_id = 0;
+  Eigen::Vector3d center_in_reference_m = Eigen::Vector3d::Zero();
+};
+
+// Which of the two shapes a covariance belongs to.
+enum class ComparedShape { kShape, kReference };
+
 // Derivatives of the least-squares pose with respect to the corners of the alignment.
 class AlignmentSensitivity {
  public:
@@ -28,10 +38,15 @@ class AlignmentSensitivity {
   // Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame
   // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
   // covariance lacks a corner of the marker or of the alignment.
-  std::optional<Eigen::Matrix3d> DifferenceCovariance(int marker_id,
-                                                      const Eigen::Vector3d& center_in_reference_m,
+  std::optional<Eigen::Matrix3d> DifferenceCovariance(const PlacedMarker& marker,
                                                       const PointCovariance& shape,
                                                       const PointCovariance* reference) const;
+
+  // The part of it that comes from the noise of one shape, jointly for several markers: three rows
+  // for each.
+  std::optional<Eigen::MatrixXd> JointCovariance(const std::vector<PlacedMarker>& markers,
+                                                 ComparedShape whose,
+                                                 const PointCovariance& covariance) const;
 
   // Number of the six rigid motions that the equations do not determine, such as the rotations of a
   // sphere.
@@ -45,8 +60,7 @@ class AlignmentSensitivity {
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
   // Gradient of direction . (aligned centre) with respect to the aligned corners.
-  std::map<CornerId, Eigen::Vector3d> CenterGradient(int marker_id,
-                                                     const Eigen::Vector3d& center_in_reference_m,
+  std::map<CornerId, Eigen::Vector3d> CenterGradient(const PlacedMarker& marker,
                                                      const Eigen::Vector3d& direction) const;
 
   const Alignment& alignment_;

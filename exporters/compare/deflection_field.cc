@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/compare/surface_noise.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -23,40 +24,51 @@ MarkerShape CommonMarkers(const MarkerShape& shape, const MarkerShape& other) {
   return common;
 }
 
-std::optional<double> CombinedSigma(const std::optional<double>& a,
-                                    const std::optional<double>& b) {
-  if (!a || !b) return std::nullopt;
-  return std::hypot(*a, *b);
+std::optional<double> Sigma(const std::optional<double>& variance_m2,
+                            const std::optional<double>& other_variance_m2) {
+  if (!variance_m2 || !other_variance_m2) return std::nullopt;
+  return std::sqrt(*variance_m2 + *other_variance_m2);
 }
 
-DeflectionField FieldBetween(const MarkerShape& shape, const MarkerShape& reference,
-                             const LayoutPart& part, const GridOptions& options) {
-  const FittedSurface of_shape =
-      FitSurface(CollectSurfaceInput(CommonMarkers(shape, reference), part));
-  const FittedSurface of_reference =
-      FitSurface(CollectSurfaceInput(CommonMarkers(reference, shape), part));
+DeflectionField FieldBetween(const ShapeDeviation& deviation, const PointCovariance& covariance,
+                             const UncertainShape& reference, const LayoutPart& part,
+                             const GridOptions& options) {
+  const MarkerShape common = CommonMarkers(deviation.aligned_shape, reference.shape),
+                    common_of_reference = CommonMarkers(reference.shape, deviation.aligned_shape);
+  const FittedSurface of_shape = FitSurface(CollectSurfaceInput(common, part));
+  const FittedSurface of_reference = FitSurface(CollectSurfaceInput(common_of_reference, part));
+  const AlignmentSensitivity sensitivity(deviation.alignment);
+  const SurfaceNoise noise(of_shape, common, ComparedShape::kShape, sensitivity, covariance),
+      noise_of_reference(of_reference, common_of_reference, ComparedShape::kReference, sensitivity,
+                         reference.covariance);
   DeflectionField field{part.name, MakeGrid(of_reference.surface, options), {}};
-  if (!FacesLikeMarkers(of_reference, reference)) {
+  if (!FacesLikeMarkers(of_reference, reference.shape)) {
     for (Eigen::Vector3d& normal : field.reference.normals) normal = -normal;
   }
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
     const double u = field.reference.surface_parameters[i].x(),
                  v = field.reference.surface_parameters[i].y();
+    const Eigen::Vector3d& normal = field.reference.normals[i];
     Deflection deflection;
     deflection.vector_m = EvaluatePoint(of_shape.surface, u, v) - field.reference.vertices_m[i];
-    deflection.distance_m = deflection.vector_m.dot(field.reference.normals[i]);
-    deflection.sigma_m = CombinedSigma(SigmaAt(of_shape, u, v), SigmaAt(of_reference, u, v));
+    deflection.distance_m = deflection.vector_m.dot(normal);
+    deflection.sigma_m =
+        Sigma(noise.VarianceAt(u, v, normal), noise_of_reference.VarianceAt(u, v, normal));
     field.deflections.push_back(deflection);
   }
   return field;
 }
 
 // The grid of the shape's surface moved to the design.
-DeflectionField FieldFrom(const MeshDistance& design, const MarkerShape& shape,
-                          const LayoutPart& part, const GridOptions& options,
-                          const EdgeOptions& edge) {
+DeflectionField FieldFrom(const MeshDistance& design, const ShapeDeviation& deviation,
+                          const PointCovariance& covariance, const LayoutPart& part,
+                          const GridOptions& options, const EdgeOptions& edge) {
   const double reach_m = kMPerMm * edge.tolerance_mm;
-  const FittedSurface fit = FitSurface(CollectSurfaceInput(shape, part));
+  const double design_variance_m2 = deviation.surface_sigma_m * deviation.surface_sigma_m;
+  const FittedSurface fit = FitSurface(CollectSurfaceInput(deviation.aligned_shape, part));
+  const AlignmentSensitivity sensitivity(deviation.alignment);
+  const SurfaceNoise noise(fit, deviation.aligned_shape, ComparedShape::kShape, sensitivity,
+                           covariance);
   DeflectionField field{part.name, MakeGrid(fit.surface, options), {}};
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
     const Eigen::Vector2d& at = field.reference.surface_parameters[i];
@@ -64,7 +76,8 @@ DeflectionField FieldFrom(const MeshDistance& design, const MarkerShape& shape,
     field.deflections.emplace_back();
     if (foot.IsWithin(reach_m, design.Diagonal_m())) {
       field.deflections.back() =
-          Deflection{foot.distance_m * foot.normal, foot.distance_m, SigmaAt(fit, at.x(), at.y())};
+          Deflection{foot.distance_m * foot.normal, foot.distance_m,
+                     Sigma(noise.VarianceAt(at.x(), at.y(), foot.normal), design_variance_m2)};
     }
     field.reference.vertices_m[i] -= foot.distance_m * foot.normal;
     field.reference.normals[i] = foot.normal;
@@ -89,19 +102,23 @@ DeflectionReport ForEachPart(const Layout& layout, const std::string& wanted_par
 
 }  // namespace
 
-DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                    const Layout& layout, const GridOptions& grid,
-                                    const std::string& part, const EdgeOptions&) {
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
+                                    const PointCovariance& covariance,
+                                    const UncertainShape& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part,
+                                    const EdgeOptions&) {
   return ForEachPart(layout, part, [&](const LayoutPart& p) {
-    return FieldBetween(aligned_shape, reference, p, grid);
+    return FieldBetween(deviation, covariance, reference, p, grid);
   });
 }
 
-DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MeshDistance& reference,
-                                    const Layout& layout, const GridOptions& grid,
-                                    const std::string& part, const EdgeOptions& edge) {
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
+                                    const PointCovariance& covariance,
+                                    const MeshDistance& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part,
+                                    const EdgeOptions& edge) {
   return ForEachPart(layout, part, [&](const LayoutPart& p) {
-    return FieldFrom(reference, aligned_shape, p, grid, edge);
+    return FieldFrom(reference, deviation, covariance, p, grid, edge);
   });
 }
 

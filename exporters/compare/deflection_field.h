@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <cmath>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include "exporters/compare/shape_comparison.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
 #include "exporters/shape/marker_shape.h"
@@ -24,9 +26,14 @@ namespace velamap {
 struct Deflection {
   Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
   double distance_m = 0.0;                             // its component along the reference's normal
-  // Sigma of the distance by the noise of the markers, without the alignment and without errors
-  // that all markers of a shape share. Nothing for a surface through markers without sigma.
+  // Sigma of the distance from all that the sigmas of the markers contain, the errors that they
+  // share and the alignment too, and from the smoothing of the surfaces. Nothing where the markers
+  // have none.
   std::optional<double> sigma_m;
+
+  bool IsSignificant() const {
+    return sigma_m && std::abs(distance_m) > kSignificantSigmas * *sigma_m;
+  }
 };
 
 struct DeflectionField {
@@ -44,14 +51,19 @@ struct DeflectionReport {
   std::vector<std::string> notes;       // parts without one, with the reason
 };
 
-// `aligned_shape` is in the frame of the reference (ShapeDeviation::aligned_shape). An empty `part`
-// means all parts. Only a design has an edge; between shapes `edge` is not used.
-DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                    const Layout& layout, const GridOptions& grid,
-                                    const std::string& part = "", const EdgeOptions& edge = {});
-DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MeshDistance& reference,
-                                    const Layout& layout, const GridOptions& grid,
-                                    const std::string& part = "", const EdgeOptions& edge = {});
+// `deviation` comes from CompareWithShape() or CompareWithMesh() with the same reference, and
+// `covariance` is of the corners of the shape, in its own frame. An empty `part` means all parts.
+// Only a design has an edge; between shapes `edge` is not used.
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
+                                    const PointCovariance& covariance,
+                                    const UncertainShape& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part = "",
+                                    const EdgeOptions& edge = {});
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
+                                    const PointCovariance& covariance,
+                                    const MeshDistance& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part = "",
+                                    const EdgeOptions& edge = {});
 
 // The fields of one compared shape, by name.
 struct NamedDeflections {

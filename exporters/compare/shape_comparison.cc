@@ -185,7 +185,7 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
     result.normal = MarkerNormal(*other);
     result.difference_m = *marker.x_in_shape_m[0] - *other->x_in_shape_m[0];
     result.distance_m = result.normal.dot(*result.difference_m);
-    SetSigma(sensitivity.DifferenceCovariance(marker.marker_id, result.x_in_reference_m,
+    SetSigma(sensitivity.DifferenceCovariance({marker.marker_id, result.x_in_reference_m},
                                               shape.covariance, &reference.covariance),
              0.0, &result);
     deviation.markers.push_back(std::move(result));
@@ -229,7 +229,7 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
     result.distance_m = foot.distance_m;
     result.beside_m = foot.beside_m;
     const auto covariance_m2 = sensitivity.DifferenceCovariance(
-        marker.marker_id, result.x_in_reference_m, shape.covariance, nullptr);
+        {marker.marker_id, result.x_in_reference_m}, shape.covariance, nullptr);
     const double reach_m = ReachOf(foot, result.x_in_reference_m, covariance_m2, edge);
     result.is_over_surface = foot.IsWithin(reach_m, mesh.Diagonal_m());
     if (result.is_over_surface && !foot.IsOverSurface(mesh.Diagonal_m())) {

@@ -17,6 +17,13 @@ constexpr double kByChance = 0.0455;  // beyond two sigmas
 constexpr double kSame_m = 1e-6;
 constexpr std::size_t kMaxNamed = 4;
 
+// Whether so many of `num_all` differences are significant without any cause, the largest of them
+// by `largest_sigmas`.
+bool IsByChance(int num_significant, int num_all, double largest_sigmas) {
+  constexpr double kNeverByChance = 3.5;  // sigmas, which 1 of 2100 exceeds
+  return num_significant <= std::ceil(kByChance * num_all) && largest_sigmas < kNeverByChance;
+}
+
 bool IsSame(const ShapeDeviation& deviation) {
   return deviation.distance_m.MaxAbs() < kSame_m && deviation.difference_m.MaxAbs() < kSame_m;
 }
@@ -51,14 +58,56 @@ std::string Text(const SectionDifference& d, const std::vector<Comparison>& seri
                      unit == "°" ? "" : " ", unit);
 }
 
-std::string SectionClause(const std::vector<Comparison>& series) {
+// The points of a surface with a sigma, and those that differ significantly.
+struct SurfacePoints {
+  int num_known = 0, num_significant = 0;
+};
+
+SurfacePoints PointsOf(const DeflectionField& field) {
+  SurfacePoints points;
+  for (const auto& deflection : field.deflections) {
+    if (!deflection || !deflection->sigma_m) continue;
+    ++points.num_known;
+    points.num_significant += deflection->IsSignificant() ? 1 : 0;
+  }
+  return points;
+}
+
+std::string SurfaceText(const DeflectionField& field) {
+  const SurfacePoints points = PointsOf(field);
+  const double percent = 100.0 * points.num_significant / points.num_known;
+  return fmt::format("the surface of {} differs significantly at {} % of its points", field.part,
+                     percent < 1 ? "less than 1" : fmt::format("{:.0f}", percent));
+}
+
+// What differs significantly, of all that the items name: a number of a section, else the markers,
+// else a surface. Nothing is said to differ only if none of them does.
+std::string SignificanceClause(const std::vector<Comparison>& series) {
   const Comparison& comparison = series.front();
+  const ShapeDeviation& deviation = comparison.deviation;
   const auto significant = SignificantOf(comparison.sections);
   if (const SectionDifference* first = ForTheFirstLine(significant)) {
-    return "; " + Text(*first, series) + " (significant)";
+    const bool is_by_chance = IsByChance(static_cast<int>(significant.size()),
+                                         static_cast<int>(comparison.sections.differences.size()),
+                                         std::abs(*significant.front()->significance));
+    return fmt::format("; {} (significant{})", Text(*first, series),
+                       is_by_chance ? ", as by chance" : "");
   }
-  if (comparison.deviation.num_with_sigma == 0) return "";
-  return comparison.deviation.num_significant == 0 ? "; no difference is significant" : "";
+  if (deviation.num_significant > 0) {
+    double largest_sigmas = 0.0;
+    for (const MarkerDeviation& marker : deviation.markers) {
+      if (!marker.is_over_surface) continue;
+      largest_sigmas = std::max(largest_sigmas, std::abs(marker.significance.value_or(0.0)));
+    }
+    const bool is_by_chance =
+        IsByChance(deviation.num_significant, deviation.num_with_sigma, largest_sigmas);
+    return fmt::format("; {} of {} markers differ significantly{}", deviation.num_significant,
+                       deviation.num_with_sigma, is_by_chance ? ", as by chance" : "");
+  }
+  for (const DeflectionField& field : comparison.deflections.fields) {
+    if (PointsOf(field).num_significant > 0) return "; " + SurfaceText(field);
+  }
+  return deviation.num_with_sigma == 0 ? "" : "; no difference is significant";
 }
 
 std::string FirstLine(const ComparisonPageInput& input) {
@@ -70,7 +119,7 @@ std::string FirstLine(const ComparisonPageInput& input) {
       return first.IsAgainstDesign() ? "The shape matches the design." : "The shapes are the same.";
     }
     return fmt::format("{} {:.3g} mm RMS{}.", what, kMmPerM * first.deviation.distance_m.rms,
-                       SectionClause(input.series));
+                       SignificanceClause(input.series));
   }
   std::vector<std::string> shapes;
   for (const Comparison& comparison : input.series) {
@@ -140,23 +189,18 @@ class Items {
     for (const SectionDifference* difference : significant) {
       if (names.size() < kMaxNamed) names.push_back(Text(*difference, series_));
     }
-    Add(fmt::format("{} of {} numbers of the sections differ significantly: {}{}",
-                    significant.size(), num_all, fmt::join(names, ", "),
-                    significant.size() > kMaxNamed ? " …" : ""));
+    Add(
+        fmt::format("{} of {} numbers of the sections differ significantly; about {:.0f} would be "
+                    "expected by chance: {}{}",
+                    significant.size(), num_all, kByChance * static_cast<double>(num_all),
+                    fmt::join(names, ", "), significant.size() > kMaxNamed ? " …" : ""));
   }
 
   void AddSurface() {
     for (const DeflectionField& field : comparison_.deflections.fields) {
-      int num_known = 0, num_significant = 0;
-      for (const auto& deflection : field.deflections) {
-        if (!deflection || !deflection->sigma_m) continue;
-        ++num_known;
-        num_significant +=
-            std::abs(deflection->distance_m) > kSignificantSigmas * *deflection->sigma_m ? 1 : 0;
-      }
-      if (num_known == 0 || num_significant == 0) continue;
-      Add(fmt::format("the surface of {} differs significantly at {:.0f} % of its points",
-                      field.part, 100.0 * num_significant / num_known));
+      if (PointsOf(field).num_significant == 0) continue;
+      Add(fmt::format("{}; about {:.0f} % would be expected by chance, neighbours together",
+                      SurfaceText(field), 100.0 * kByChance));
     }
   }
 

@@ -145,6 +145,30 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
   return residuals;
 }
 
+// Sets what each marker adds to the poles. A point of a given edge errs like the nearest marker.
+void AddDependence(const SurfaceParameters& parameters, const SmoothSurface& smooth,
+                   FittedSurface* result) {
+  const auto& observations = parameters.observations;
+  if (smooth.pole_by_observation.size() == 0) return;
+  std::vector<const SurfaceObservation*> markers;
+  for (const SurfaceObservation& observation : observations) {
+    if (observation.marker_id < 0) continue;
+    markers.push_back(&observation);
+    result->marker_ids.push_back(observation.marker_id);
+  }
+  result->smoothing_covariance_m2 = smooth.smoothing_covariance_m2;
+  result->pole_by_marker = Eigen::MatrixXd::Zero(smooth.pole_by_observation.rows(), markers.size());
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const auto distance_m = [&](const SurfaceObservation* marker) {
+      return (marker->x_in_shape_m - observations[k].x_in_shape_m).norm();
+    };
+    const auto nearest = std::min_element(
+        markers.begin(), markers.end(),
+        [&](const auto* a, const auto* b) { return distance_m(a) < distance_m(b); });
+    result->pole_by_marker.col(nearest - markers.begin()) += smooth.pole_by_observation.col(k);
+  }
+}
+
 void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name,
                const std::optional<double>& extension_mm, const std::string& extension_option) {
   if (edge.size() == 1) {
@@ -187,6 +211,19 @@ std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
   return SigmaAt(fit.surface, fit.pole_covariance_m2, u, v);
 }
 
+std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v) {
+  if (fit.pole_by_marker.size() == 0) return std::nullopt;
+  SurfaceDependence dependence;
+  dependence.marker_weights = (PoleShares(fit.surface, u, v) * fit.pole_by_marker).transpose();
+  const auto variance_m2 = [&](const Eigen::MatrixXd& pole_covariance_m2) {
+    return std::pow(SigmaAt(fit.surface, pole_covariance_m2, u, v).value_or(0.0), 2);
+  };
+  const double both_m2 = variance_m2(fit.pole_covariance_m2);
+  dependence.smoothing_variance_m2 = std::min(both_m2, variance_m2(fit.smoothing_covariance_m2));
+  dependence.noise_variance_m2 = both_m2 - dependence.smoothing_variance_m2;
+  return dependence;
+}
+
 bool FacesLikeMarkers(const FittedSurface& fit, const MarkerShape& shape) {
   double agreement = 0.0;
   for (const SurfaceResidual& marker : fit.residuals) {
@@ -225,6 +262,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   result.surface = smooth.surface;
   result.pole_covariance_m2 = smooth.pole_covariance_m2;
   result.num_effective_parameters = smooth.num_effective_parameters;
+  AddDependence(parameters, smooth, &result);
   result.residuals = Residuals(sorted, parameters, smooth.surface);
   result.notes = sorted.notes;
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());

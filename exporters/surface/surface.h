@@ -76,12 +76,27 @@ struct FittedSurface {
   double num_effective_parameters = 0.0;
   // Per coordinate of the poles (surface_smoother.h); empty if the markers are interpolated.
   Eigen::MatrixXd pole_covariance_m2;
+  // The same in two parts, for noise that the markers share: the markers of the fit with what each
+  // adds to the poles (poles x markers, rows sum to 1), and what comes from the smoothing alone.
+  std::vector<int> marker_ids;
+  Eigen::MatrixXd pole_by_marker, smoothing_covariance_m2;
   std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
   std::vector<std::string> notes;       // lines left out and why, gaps, markers outside the edge
 };
 
 // Sigma of the surface at a place along its normal, m; nothing if the markers are interpolated.
+// The noise counts as independent from marker to marker.
 std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v);
+
+// How the surface at a place depends on the markers of the fit.
+struct SurfaceDependence {
+  Eigen::VectorXd marker_weights;  // by FittedSurface::marker_ids; they sum to 1
+  // The two parts of the square of SigmaAt(): from the noise of the markers as the residuals show
+  // it, independent from marker to marker, and from what the smoothing may have flattened.
+  double noise_variance_m2 = 0.0, smoothing_variance_m2 = 0.0;
+};
+// Nothing if the markers are interpolated.
+std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v);
 
 // Whether the surface's normals point to the side that most of the markers face. `shape` holds the
 // markers of the fit.

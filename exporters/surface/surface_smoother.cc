@@ -166,6 +166,20 @@ double NormalSquaredResiduals(const System& system, const Solution& solution,
   return residuals.cwiseProduct(normals).rowwise().sum().squaredNorm();
 }
 
+// Sets the covariance of the poles and its parts. `variance` is that of an observation of weight 1.
+void AddUncertainty(const System& system, const std::vector<double>& observation_weights,
+                    const Weights& weights, double variance, SmoothSurface* smooth) {
+  const auto [penalty, factor] = MakeEquations(system, weights);
+  const Eigen::MatrixXd inverse =
+      factor.solve(Eigen::MatrixXd::Identity(penalty.rows(), penalty.rows()));
+  smooth->pole_covariance_m2 = variance * inverse;
+  smooth->smoothing_covariance_m2 = variance * inverse * penalty * inverse;
+  smooth->pole_by_observation = factor.solve(system.design.transpose());
+  for (std::size_t k = 0; k < observation_weights.size(); ++k) {
+    smooth->pole_by_observation.col(k) *= std::sqrt(observation_weights[k]);
+  }
+}
+
 struct Choice {
   Solution solution;
   double score = std::numeric_limits<double>::infinity();
@@ -219,11 +233,11 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
   }
   if (smoothing == Smoothing::kInterpolate) {
     const Solution closest = Solve(system, {kMinWeightAlongLines, kMinWeight});
-    return {MakeSurface(parameters, closest), closest.trace, {}};
+    return {MakeSurface(parameters, closest), closest.trace, {}, {}, {}};
   }
   const Solution parabolic = Solve(system, {kMaxWeight, kMaxWeight});
   const SplineSurface base = MakeSurface(parameters, parabolic);
-  if (smoothing == Smoothing::kParabolas) return {base, parabolic.trace, {}};
+  if (smoothing == Smoothing::kParabolas) return {base, parabolic.trace, {}, {}, {}};
   Eigen::MatrixX3d normals(n, 3);
   for (std::size_t k = 0; k < n; ++k) {
     const SurfaceObservation& observation = parameters.observations[k];
@@ -243,17 +257,21 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
   const double free = n - chosen.solution.trace;
   const double variance =
       smoothing == Smoothing::kKnownSigma ? 1.0 : squares_of(chosen.solution) / std::max(free, 1.0);
-  const Eigen::Index num_poles = system.normal.rows();
-  return {MakeSurface(parameters, chosen.solution), chosen.solution.trace,
-          variance * MakeEquations(system, chosen.weights)
-                         .factor.solve(Eigen::MatrixXd::Identity(num_poles, num_poles))};
+  SmoothSurface smooth;
+  smooth.surface = MakeSurface(parameters, chosen.solution);
+  smooth.num_effective_parameters = chosen.solution.trace;
+  AddUncertainty(system, weights, chosen.weights, variance, &smooth);
+  return smooth;
+}
+
+Eigen::RowVectorXd PoleShares(const SplineSurface& surface, double u, double v) {
+  return BasisAt(surface.knots_u, surface.degree_u, surface.knots_v, surface.degree_v, u, v);
 }
 
 std::optional<double> SigmaAt(const SplineSurface& surface,
                               const Eigen::MatrixXd& pole_covariance_m2, double u, double v) {
   if (pole_covariance_m2.size() == 0) return std::nullopt;
-  const Eigen::RowVectorXd basis =
-      BasisAt(surface.knots_u, surface.degree_u, surface.knots_v, surface.degree_v, u, v);
+  const Eigen::RowVectorXd basis = PoleShares(surface, u, v);
   return std::sqrt(std::max(0.0, basis.dot(basis * pole_covariance_m2)));
 }
 

@@ -30,7 +30,14 @@ struct SmoothSurface {
   // Per coordinate of the poles, m^2, with the penalty as prior knowledge (Wahba, "Bayesian
   // confidence intervals for the cross-validated smoothing spline", 1983). Empty if interpolating.
   Eigen::MatrixXd pole_covariance_m2;
+  // The two parts of it, for noise that the observations share: how far the poles follow each
+  // observation (poles x observations, rows sum to 1), and what does not come from their noise but
+  // from what the smoothing may have flattened. Empty if interpolating.
+  Eigen::MatrixXd pole_by_observation, smoothing_covariance_m2;
 };
+
+// The share of each pole in a point of the surface; they sum to 1.
+Eigen::RowVectorXd PoleShares(const SplineSurface& surface, double u, double v);
 
 // Sigma of a smooth surface at a place along its normal, m; nothing if it interpolates.
 std::optional<double> SigmaAt(const SplineSurface& surface,

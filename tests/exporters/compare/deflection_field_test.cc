@@ -26,8 +26,32 @@ constexpr int kNumPoints = 21;
 
 GridOptions Grid() { return {kNumPoints, kNumPoints}; }
 
+AlignmentOptions WithMethod(AlignmentMethod method) {
+  AlignmentOptions options;
+  options.method = method;
+  return options;
+}
+
+// Both in one frame, with the sigmas of the shapes.
+DeflectionReport ReportOf(const MarkerShape& shape, const MarkerShape& reference) {
+  const UncertainShape uncertain = WithSigmas(shape), uncertain_reference = WithSigmas(reference);
+  return ComputeDeflections(CompareWithShape(uncertain, uncertain_reference, BoatLayout(),
+                                             WithMethod(AlignmentMethod::kNone)),
+                            uncertain.covariance, uncertain_reference, BoatLayout(), Grid());
+}
+
 DeflectionField FieldOf(const MarkerShape& shape, const MarkerShape& reference) {
-  return ComputeDeflections(shape, reference, BoatLayout(), Grid()).fields.at(0);
+  return ReportOf(shape, reference).fields.at(0);
+}
+
+// The sail only, in the frame of the design.
+DeflectionReport ReportFrom(const MeshDistance& design, const MarkerShape& shape,
+                            double design_sigma_m = 0.0) {
+  const UncertainShape uncertain = WithSigmas(shape);
+  return ComputeDeflections(
+      CompareWithMesh(uncertain, design, BoatLayout(), WithMethod(AlignmentMethod::kNone), "sail",
+                      {}, design_sigma_m),
+      uncertain.covariance, design, BoatLayout(), Grid());
 }
 
 double LargestVector(const DeflectionField& field) {
@@ -121,6 +145,66 @@ TEST(Deflections, GiveAKnownBumpBackWithinSigmas) {
   EXPECT_NEAR(LargestVector(FieldOf(bumped, boat)), 0.03, 0.002);
 }
 
+// Errors that markers share, here of the size of a shape, and the rotation that the noise of the
+// hull gives to the sail above it: at the head, both are far larger than the noise of a marker.
+TEST(Deflections, SigmasAreWhatRepetitionsScatterBy) {
+  const MarkerShape boat = BoatShape(0.001);
+  UncertainShape uncertain = WithSigmas(boat);
+  uncertain.covariance.factor.resize(uncertain.covariance.factor.rows(), 1);
+  uncertain.covariance.signs = Eigen::VectorXd::Ones(1);
+  for (std::size_t i = 0; i < uncertain.covariance.point3D_ids.size(); ++i) {
+    const CornerId id = CornerFromPoint3DId(uncertain.covariance.point3D_ids[i]);
+    uncertain.covariance.factor.block<3, 1>(3 * static_cast<Eigen::Index>(i), 0) =
+        1e-3 * *FindMarker(boat, id.marker_id)->x_in_shape_m[static_cast<std::size_t>(id.corner)];
+  }
+  const auto field_of = [&](const UncertainShape& shape, const UncertainShape& reference) {
+    return ComputeDeflections(CompareWithShape(shape, reference, BoatLayout(), {}),
+                              shape.covariance, reference, BoatLayout(), {5, 5})
+        .fields.at(0);
+  };
+  const DeflectionField field = field_of(uncertain, uncertain);
+  std::vector<std::vector<double>> distances_m(field.deflections.size());
+  SampleShapes(boat, uncertain.covariance, 100, [&](const MarkerShape& sample) {
+    const DeflectionField sampled = field_of({sample, {}}, {boat, {}});
+    for (std::size_t i = 0; i < distances_m.size(); ++i) {
+      distances_m[i].push_back(sampled.deflections[i]->distance_m);
+    }
+  });
+  double predicted = 0.0, sampled = 0.0;
+  for (std::size_t i = 0; i < distances_m.size(); ++i) {
+    // The reference scatters as much as the shape.
+    const double sampled_m = std::sqrt(2.0) * ComputeStatistics(distances_m[i]).standard_deviation;
+    EXPECT_NEAR(*field.deflections[i]->sigma_m / sampled_m, 1.0, 0.2) << i;
+    predicted += std::pow(*field.deflections[i]->sigma_m, 2);
+    sampled += std::pow(sampled_m, 2);
+  }
+  EXPECT_NEAR(std::sqrt(predicted / sampled), 1.0, 0.1);
+  EXPECT_GT(*field.deflections.back()->sigma_m, 2 * *field.deflections.front()->sigma_m);
+}
+
+TEST(Deflections, HaveNoSigmaWhereTheMarkersHaveNone) {
+  const MarkerShape boat = BoatShape(0.001);
+  MarkerShape partly = boat;
+  partly.markers.back().sigma_m = {};  // a marker of the hull, by which they are aligned
+  const UncertainShape uncertain = WithSigmas(partly);
+  const ShapeDeviation deviation = CompareWithShape(uncertain, WithSigmas(boat), BoatLayout(), {});
+  ASSERT_EQ(deviation.num_with_sigma, 0);
+  const DeflectionField field =
+      ComputeDeflections(deviation, uncertain.covariance, WithSigmas(boat), BoatLayout(), Grid())
+          .fields.at(0);
+  for (const auto& deflection : field.deflections) EXPECT_FALSE(deflection->sigma_m.has_value());
+}
+
+TEST(Deflections, TheSigmaOfADesignAddsToThatOfTheSail) {
+  const MeshDistance design(SailMesh());
+  const DeflectionField exact = ReportFrom(design, BoatShape(0.001)).fields.at(0);
+  const DeflectionField uncertain = ReportFrom(design, BoatShape(0.001), 0.002).fields.at(0);
+  for (std::size_t i = 0; i < exact.deflections.size(); ++i) {
+    EXPECT_NEAR(*uncertain.deflections[i]->sigma_m,
+                std::hypot(*exact.deflections[i]->sigma_m, 0.002), 1e-12);
+  }
+}
+
 // Markers on the other side of the cloth: positive is where they face, as for their own distances.
 TEST(Deflections, ArePositiveOnTheSideOfTheMarkers) {
   MarkerShape boat = BoatShape(), turned = boat;
@@ -131,10 +215,9 @@ TEST(Deflections, ArePositiveOnTheSideOfTheMarkers) {
   const Eigen::Vector3d motion(0, 0.02, 0);
   for (const MarkerShape& reference : {boat, turned}) {
     const MarkerShape shape = Shifted(IdsOf("sail"), motion, reference);
-    AlignmentOptions none;
-    none.method = AlignmentMethod::kNone;
-    const double of_markers_m =
-        CompareWithShape({shape, {}}, {reference, {}}, BoatLayout(), none, "sail").distance_m.mean;
+    const double of_markers_m = CompareWithShape({shape, {}}, {reference, {}}, BoatLayout(),
+                                                 WithMethod(AlignmentMethod::kNone), "sail")
+                                    .distance_m.mean;
     double of_field_m = 0.0;
     for (const auto& deflection : FieldOf(shape, reference).deflections) {
       of_field_m += deflection->distance_m / (kNumPoints * kNumPoints);
@@ -146,7 +229,7 @@ TEST(Deflections, ArePositiveOnTheSideOfTheMarkers) {
 TEST(Deflections, FromADesignAreAlongItsNormal) {
   const MeshDistance design(SailMesh());
   const MarkerShape shape = Shifted(IdsOf("sail"), {0, 0.02, 0}, BoatShape());
-  const DeflectionReport report = ComputeDeflections(shape, design, BoatLayout(), Grid());
+  const DeflectionReport report = ReportFrom(design, shape);
   const DeflectionField& field = report.fields.at(0);
   for (std::size_t i = 0; i < field.deflections.size(); ++i) {
     ASSERT_TRUE(field.deflections[i].has_value());
@@ -160,8 +243,7 @@ TEST(Deflections, FromADesignAreAlongItsNormal) {
 
 TEST(Deflections, AreUnknownBesideTheDesign) {
   const MeshDistance narrow(SailMesh(-0.1));
-  const DeflectionField field =
-      ComputeDeflections(BoatShape(), narrow, BoatLayout(), Grid()).fields.at(0);
+  const DeflectionField field = ReportFrom(narrow, BoatShape()).fields.at(0);
   EXPECT_FALSE(field.deflections.front().has_value());
   EXPECT_TRUE(field.deflections[kNumPoints * (kNumPoints / 2) + kNumPoints / 2].has_value());
   std::ostringstream vts;
@@ -173,15 +255,14 @@ TEST(Deflections, AreUnknownBesideTheDesign) {
 TEST(Deflections, APartWithoutASurfaceIsNoted) {
   MarkerShape shape = BoatShape();
   shape.markers.erase(shape.markers.begin() + 6, shape.markers.begin() + 30);  // h1 is left
-  const DeflectionReport report = ComputeDeflections(shape, BoatShape(), BoatLayout(), Grid());
+  const DeflectionReport report = ReportOf(shape, BoatShape());
   EXPECT_THAT(report.fields, IsEmpty());
   EXPECT_THAT(report.notes, ElementsAre(HasSubstr("sail: no deflections: ")));
 }
 
 TEST(Deflections, FilesHoldPointAndVector) {
   const MarkerShape boat = BoatShape(0.001);
-  const DeflectionReport report =
-      ComputeDeflections(Shifted(IdsOf("sail"), {0, 0.5, 0}, boat), boat, BoatLayout(), Grid());
+  const DeflectionReport report = ReportOf(Shifted(IdsOf("sail"), {0, 0.5, 0}, boat), boat);
   std::ostringstream csv, vts;
   WriteDeflectionCsv({{"trim2", &report}}, csv);
   std::istringstream in(csv.str());

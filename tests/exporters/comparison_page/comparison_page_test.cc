@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -103,6 +104,80 @@ TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
   ASSERT_NE(camber, data["numbers"].end());
   EXPECT_TRUE((*camber)["values"][0]["is_significant"].get<bool>());
   EXPECT_EQ((*camber)["unit"], "%");
+}
+
+// Whatever the items call significant keeps the first line from saying that nothing is.
+TEST(ComparisonPage, TheFirstLineAgreesWithItsItems) {
+  const MarkerShape boat = BoatShape(0.001);
+  const auto page_of = [](const PageExample& example) {
+    return std::pair(example.Data()["verdict"]["text"].get<std::string>(),
+                     example.Data()["verdict"]["items"].dump());
+  };
+  PageExample within;
+  within.Add("trim2", Shifted({33}, 0.0003 * MarkerNormal(*FindWholeMarker(boat, 33)), boat));
+  EXPECT_THAT(page_of(within).first, HasSubstr("no difference is significant"));
+  EXPECT_THAT(page_of(within).second, HasSubstr("0 of 36 markers differ significantly"));
+  EXPECT_THAT(page_of(within).second, Not(HasSubstr("surface of sail differs")));
+
+  // Averages of many markers may be significant where none of them is.
+  PageExample surface_only = within;
+  for (auto& deflection : surface_only.series[0].deflections.fields.at(0).deflections) {
+    deflection->sigma_m = std::abs(deflection->distance_m) / 2.5;
+  }
+  EXPECT_THAT(page_of(surface_only).first,
+              HasSubstr("mm RMS; the surface of sail differs significantly at "));
+  EXPECT_THAT(page_of(surface_only).second,
+              HasSubstr("The surface of sail differs significantly at "));
+
+  PageExample markers_only = surface_only;
+  markers_only.series[0].deviation.num_significant = 3;
+  EXPECT_THAT(page_of(markers_only).first,
+              HasSubstr("mm RMS; 3 of 36 markers differ significantly."));
+  markers_only.series[0].deviation.num_significant = 1;
+  EXPECT_THAT(page_of(markers_only).first,
+              HasSubstr("mm RMS; 1 of 36 markers differ significantly, as by chance."));
+
+  PageExample number_only = within;
+  number_only.series[0].sections.differences.at(3).significance = 2.3;
+  EXPECT_THAT(page_of(number_only).first, HasSubstr(" (significant, as by chance)."));
+  EXPECT_THAT(page_of(number_only).second,
+              HasSubstr("1 of 30 numbers of the sections differ significantly; about 1 would be "
+                        "expected by chance: "));
+  number_only.series[0].sections.differences.at(3).significance = 9.0;
+  EXPECT_THAT(page_of(number_only).first, HasSubstr(" (significant)."));
+
+  // Without sigmas, nothing is called significant or not.
+  PageExample unknown = within;
+  unknown.series[0] =
+      Compare("trim2", Exact(Fuller()), Exact(BoatShape()), BoatLayout(), WithDeflections());
+  EXPECT_THAT(page_of(unknown).first, Not(HasSubstr("significant")));
+}
+
+// Two results that differ by what their markers share, such as their size, differ as little by
+// their surfaces as by their markers.
+TEST(ComparisonPage, SurfacesAreAsUncertainAsTheirMarkers) {
+  const MarkerShape boat = BoatShape(0.0002);
+  UncertainShape uncertain = WithSigmas(boat);
+  auto& covariance = uncertain.covariance;
+  covariance.factor.resize(covariance.factor.rows(), 1);
+  covariance.signs = Eigen::VectorXd::Ones(1);
+  for (std::size_t i = 0; i < covariance.point3D_ids.size(); ++i) {
+    const CornerId id = CornerFromPoint3DId(covariance.point3D_ids[i]);
+    covariance.factor.block<3, 1>(3 * static_cast<Eigen::Index>(i), 0) =
+        0.004 * *FindMarker(boat, id.marker_id)->x_in_shape_m[static_cast<std::size_t>(id.corner)];
+  }
+  MarkerShape larger = boat;
+  for (ShapeMarker& marker : larger.markers) {
+    for (auto& x : marker.x_in_shape_m) *x *= 1.003;
+  }
+  PageExample example;
+  example.series.push_back(
+      Compare("again", {larger, covariance}, uncertain, example.layout, WithDeflections()));
+  ASSERT_GT(example.series[0].deviation.distance_m.MaxAbs(), 0.001);
+  EXPECT_EQ(example.series[0].deviation.num_significant, 0);
+  const Json verdict = example.Data()["verdict"];
+  EXPECT_THAT(verdict["text"].get<std::string>(), HasSubstr("no difference is significant"));
+  EXPECT_THAT(verdict["items"].dump(), Not(HasSubstr("surface of sail differs")));
 }
 
 TEST(ComparisonPage, ProfilesStartAtTheLuffAndLieWhereTheyAre) {
