@@ -106,8 +106,13 @@ void DropRoundingErrors(Metric* metric) {
 }  // namespace
 
 void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
-  AddAlignment(deviation.alignment, report);
   Metrics& metrics = report->metrics;
+  if (deviation.doubt) {
+    const char* level = deviation.doubt->is_bad ? "bad" : "check";
+    metrics.push_back({"verdict", level});
+    metrics.push_back({"verdict_reason", fmt::format("{}; {}", level, deviation.doubt->reason)});
+  }
+  AddAlignment(deviation.alignment, report);
   const bool is_against_surface = !deviation.scale.has_value();
   const bool has_sigma = deviation.num_with_sigma > 0;
   if (deviation.scale) {

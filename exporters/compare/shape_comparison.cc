@@ -203,6 +203,9 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
         "layout");
   }
   deviation.scale = ScaleOf(deviation.alignment, shape.shape, reference.shape);
+  if (const auto likeness = MeasureLikeness(shape.shape, reference.shape, layout)) {
+    deviation.doubt = DoubtOf(*likeness);
+  }
   Summarize(layout, &deviation);
   return deviation;
 }
@@ -250,6 +253,11 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
                              deviation.markers.begin(), deviation.markers.end(),
                              [](const auto& a, const auto& b) { return a.beside_m < b.beside_m; })
                              ->beside_m)));
+  }
+  if (deviation.alignment.method == AlignmentMethod::kBestFit) {
+    deviation.doubt =
+        DoubtOfSurfaceFit(compared, deviation.distance_m.rms, deviation.distance_m.count,
+                          static_cast<int>(deviation.markers.size()));
   }
   return deviation;
 }

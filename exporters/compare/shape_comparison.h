@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "exporters/compare/shape_alignment.h"
+#include "exporters/compare/shape_likeness.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/base/statistics.h"
@@ -59,6 +60,7 @@ struct DeviationGroup {
 };
 
 struct ShapeDeviation {
+  std::optional<ComparisonDoubt> doubt;  // whether the two can be compared at all
   Alignment alignment;
   // In the frame of the reference. The sigma of a point is the same along all axes, the root mean
   // square, which a rotation does not change.

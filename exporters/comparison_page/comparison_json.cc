@@ -271,7 +271,7 @@ std::string ComparisonJson(const ComparisonPageInput& input) {
       {"is_design", IsDesign(input)},
       {"color_limit_mm", Rounded(input.color_limit_mm.value_or(LargestDistance_mm(input.series)))},
       {"positive_side", PositiveSide(first, normal)},
-      {"verdict", {{"text", verdict.text}, {"items", verdict.items}}},
+      {"verdict", {{"text", verdict.text}, {"items", verdict.items}, {"level", verdict.level}}},
       {"frame", FrameJson(input, normal)}};
   json["shapes"] = Json::array();
   json["surfaces"] = Json::array();

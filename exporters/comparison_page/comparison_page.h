@@ -30,7 +30,7 @@ void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out);
 // The data of the page, a JSON object in UTF-8 that can be part of an HTML script element. Keys:
 //
 //   title, version, created, reference, is_design, color_limit_mm, positive_side
-//   verdict    text, items
+//   verdict    text, items, level (bad, check, or empty if the shapes can be compared)
 //   frame      name, up, forward
 //   shapes     name, alignment_by, residual_mm, turn_deg, scale_percent, num_markers,
 //              num_beyond_edge, num_beside, mean_mm, rms_mm, largest_mm, num_with_sigma,

@@ -1,4 +1,4 @@
-#include "exporters/compare/comparison_ply.h"
+#include "exporters/comparison_page/comparison_ply.h"
 
 #include <array>
 #include <limits>

@@ -24,6 +24,11 @@ bool IsByChance(int num_significant, int num_all, double largest_sigmas) {
   return num_significant <= std::ceil(kByChance * num_all) && largest_sigmas < kNeverByChance;
 }
 
+std::string Capitalized(std::string text) {
+  text[0] = static_cast<char>(std::toupper(text[0]));
+  return text;
+}
+
 bool IsSame(const ShapeDeviation& deviation) {
   return deviation.distance_m.MaxAbs() < kSame_m && deviation.difference_m.MaxAbs() < kSame_m;
 }
@@ -113,6 +118,9 @@ std::string SignificanceClause(const std::vector<Comparison>& series) {
 std::string FirstLine(const ComparisonPageInput& input) {
   const Comparison& first = input.series.front();
   if (input.series.size() == 1) {
+    if (const auto& doubt = first.deviation.doubt; doubt && doubt->is_bad) {
+      return Capitalized(doubt->reason) + ".";
+    }
     const char* what =
         first.IsAgainstDesign() ? "The shape differs from the design by" : "The shapes differ by";
     if (IsSame(first.deviation)) {
@@ -124,9 +132,14 @@ std::string FirstLine(const ComparisonPageInput& input) {
   std::vector<std::string> shapes;
   for (const Comparison& comparison : input.series) {
     const double rms_mm = kMmPerM * comparison.deviation.distance_m.rms;
-    shapes.push_back(IsSame(comparison.deviation)
-                         ? fmt::format("{} none", comparison.name)
-                         : fmt::format("{} {:.3g} mm RMS", comparison.name, rms_mm));
+    const auto& doubt = comparison.deviation.doubt;
+    if (doubt && doubt->is_bad) {
+      shapes.push_back(comparison.name + " is of another object");
+    } else if (IsSame(comparison.deviation)) {
+      shapes.push_back(comparison.name + " none");
+    } else {
+      shapes.push_back(fmt::format("{} {:.3g} mm RMS", comparison.name, rms_mm));
+    }
   }
   return fmt::format("Differences from {}: {}.", input.reference_name, fmt::join(shapes, ", "));
 }
@@ -143,6 +156,7 @@ class Items {
         items_(items) {}
 
   void AddAll() {
+    AddDoubt();
     AddMarkers();
     AddSections();
     AddSurface();
@@ -152,9 +166,14 @@ class Items {
   }
 
  private:
-  void Add(std::string text) {
-    if (prefix_.empty()) text[0] = static_cast<char>(std::toupper(text[0]));
-    items_->push_back(prefix_ + text);
+  void Add(const std::string& text) {
+    items_->push_back(prefix_.empty() ? Capitalized(text) : prefix_ + text);
+  }
+
+  // The first line says what is bad about a single shape.
+  void AddDoubt() {
+    if (!deviation_.doubt || (deviation_.doubt->is_bad && series_.size() == 1)) return;
+    Add(deviation_.doubt->reason);
   }
 
   void AddMarkers() {
@@ -228,6 +247,7 @@ class Items {
 
   void AddScale() {
     if (!deviation_.scale || std::abs(*deviation_.scale - 1) < 5e-6) return;
+    if (deviation_.doubt) return;  // which is about the size, or leaves none to compare
     Add(fmt::format(
         "the shape is {:.3f} % {} than the reference; the alignment does not change this",
         100 * std::abs(*deviation_.scale - 1), *deviation_.scale > 1 ? "larger" : "smaller"));
@@ -279,8 +299,11 @@ std::string NumberUnit(const std::string& number) {
 }
 
 ComparisonVerdict JudgeComparison(const ComparisonPageInput& input) {
-  ComparisonVerdict verdict{FirstLine(input), {}};
+  ComparisonVerdict verdict{FirstLine(input), {}, ""};
   for (const Comparison& comparison : input.series) {
+    if (const auto& doubt = comparison.deviation.doubt; doubt && verdict.level != "bad") {
+      verdict.level = doubt->is_bad ? "bad" : "check";
+    }
     const std::string prefix = input.series.size() == 1 ? "" : comparison.name + ": ";
     Items(input.series, comparison, prefix, &verdict.items).AddAll();
   }

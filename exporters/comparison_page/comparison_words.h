@@ -24,6 +24,7 @@ std::string SectionName(const std::vector<Comparison>& series, const std::string
 struct ComparisonVerdict {
   std::string text;                // one sentence
   std::vector<std::string> items;  // the figures behind it, and cautions
+  std::string level;               // "bad", "check" or empty: the worst ShapeDeviation::doubt
 };
 
 ComparisonVerdict JudgeComparison(const ComparisonPageInput& input);

@@ -2,16 +2,19 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/shape_likeness.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/log.h"
+#include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
@@ -71,6 +74,44 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   return result;
 }
 
+void CheckMetres(const std::string& path, const MarkerShape& shape, const Layout& layout) {
+  std::vector<double> sides_m, ratios;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (!marker.IsWhole()) continue;
+    sides_m.push_back(MeanSide(MarkerSides(marker)));
+    if (layout.HasMarkers()) {
+      ratios.push_back(sides_m.back() / MarkerLength(layout, marker.marker_id));
+    }
+  }
+  if (!ratios.empty() && IsThousandfold(Median(ratios))) {
+    throw InputError(
+        fmt::format("{}: its markers are 1000 times as large as the layout says: give metres, not "
+                    "millimetres",
+                    path));
+  }
+  if (sides_m.empty() || Median(sides_m) <= kMaxMarkerLength_m) return;
+  throw InputError(
+      fmt::format("{}: its markers have sides of {:.3g} m, expected at most {:g} m: give metres, "
+                  "not millimetres",
+                  path, Median(sides_m), kMaxMarkerLength_m));
+}
+
+void CheckMetres(const std::string& path, const MarkerShape& shape,
+                 const std::string& reference_path, const MarkerShape& reference,
+                 const Layout& layout) {
+  const auto likeness = MeasureLikeness(shape, reference, layout);
+  if (likeness && !likeness->IsOfAnotherObject()) {
+    const bool is_large = IsThousandfold(likeness->scale);
+    if (is_large || IsThousandfold(1 / likeness->scale)) {
+      throw InputError(fmt::format("{}: is 1000 times as large as {}: give metres, not millimetres",
+                                   is_large ? path : reference_path,
+                                   is_large ? reference_path : path));
+    }
+  }
+  CheckMetres(path, shape, layout);
+  CheckMetres(reference_path, reference, layout);
+}
+
 Option MeshUnitOption(const std::string& name, MeshReadOptions* options) {
   const auto set_unit = [options](const std::string& text, const std::string& option) {
     options->m_per_unit = MPerUnitFromName(text, option);
@@ -90,10 +131,13 @@ void CheckUnit(const std::string& path, const MeshReadOptions& options,
     LogWarning("{}; is its unit right?", what);
     return;
   }
-  throw InputError(
-      fmt::format("{}; if its unit is {}, give --{} {}; if it is right as it is, --{} {}", what,
-                  *factor > 1 ? "m" : "mm", unit_option, *factor > 1 ? "m" : "mm", unit_option,
-                  DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
+  const std::string other_unit = *factor > 1 ? "m" : "mm";
+  const std::string unit = DefaultMPerUnit(path) == 1.0 ? "m" : "mm";
+  const std::string remedy = other_unit == unit ? "check that it is a surface of the same object"
+                                                : fmt::format("if its unit is {0}, give --{1} {0}",
+                                                              other_unit, unit_option);
+  throw InputError(fmt::format("{}; {}; if it is right as it is, give --{} {}", what, remedy,
+                               unit_option, unit));
 }
 
 double SurfaceSigma(const std::string& path) {

@@ -17,6 +17,15 @@ namespace velamap {
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option);
 
+// Throws InputError naming the file whose coordinates are millimetres instead of metres: by the
+// length of its markers, which `layout` may know.
+void CheckMetres(const std::string& path, const MarkerShape& shape, const Layout& layout);
+
+// The same for two shapes, by their sizes: the one that is 1000 times as large is wrong.
+void CheckMetres(const std::string& path, const MarkerShape& shape,
+                 const std::string& reference_path, const MarkerShape& reference,
+                 const Layout& layout);
+
 // The unit of a .ply, .stl or .obj, as the option `name`.
 Option MeshUnitOption(const std::string& name, MeshReadOptions* options);
 

@@ -35,6 +35,7 @@ void FitDesign(const DesignOptions& options, const MeshDistance& design,
   CheckFaces(options.path, design);
   const ShapeDeviation deviation =
       CompareWithMesh({shape.shape, {}}, design, layout, {}, PartOfDesign(layout));
+  if (deviation.doubt) LogWarning("{}: {}", options.path, deviation.doubt->reason);
   MarkerShape of_design = MarkersOnSurface(deviation);
   MoveShape(Inverse(deviation.alignment.reference_from_shape), nullptr, &of_design);
   const SectionReport sections =

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "exporters/compare/comparison.h"
-#include "exporters/compare/comparison_ply.h"
 #include "exporters/comparison_page/comparison_page.h"
+#include "exporters/comparison_page/comparison_ply.h"
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
@@ -207,14 +207,18 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   std::optional<MeshDistance> mesh;
   if (IsMeshPath(reference_path)) {
     mesh.emplace(ReadMesh(reference_path, options.mesh));
-    for (const UncertainShape& shape : shapes) {
-      CheckUnit(reference_path, options.mesh, "reference_unit", shape.shape, *mesh);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      CheckMetres(paths[i], shapes[i].shape, layout);
+      CheckUnit(reference_path, options.mesh, "reference_unit", shapes[i].shape, *mesh);
     }
     CheckFaces(reference_path, *mesh);
     comparison.surface_sigma_m = SurfaceSigma(reference_path);
   } else {
     *reference = ReadUncertainShape(reference_path, options.reference_uncertainty_path,
                                     "--reference_uncertainty_path");
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      CheckMetres(paths[i], shapes[i].shape, reference_path, (*reference)->shape, layout);
+    }
   }
   std::vector<Comparison> series;
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -94,7 +94,11 @@ function fillDistanceView(data) {
   if (!location.hash) view.setView(0, 0);
 }
 
-function fillComparisonVerdict({text, items}) {
+function fillComparisonVerdict({text, items, level}) {
+  if (level) {
+    byId('verdict').className = `card ${level}`;
+    byId('verdict').append(element('p', {className: 'value verdict', textContent: VERDICTS[level]}));
+  }
   byId('verdict').append(element('p', {className: 'value', textContent: keepUnits(text)}));
   if (items.length === 0) return;
   byId('verdict').append(element('ul', {}, ...items.map(item =>

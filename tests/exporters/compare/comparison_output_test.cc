@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/compare/comparison_ply.h"
 #include "exporters/compare/comparison_report.h"
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/comparison_page/comparison_ply.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"

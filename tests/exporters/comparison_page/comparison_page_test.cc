@@ -153,6 +153,49 @@ TEST(ComparisonPage, TheFirstLineAgreesWithItsItems) {
   EXPECT_THAT(page_of(unknown).first, Not(HasSubstr("significant")));
 }
 
+TEST(ComparisonPage, SaysFirstThatShapesAreOfDifferentObjects) {
+  PageExample example;
+  MarkerShape other = BoatShape(0.001);  // each marker where another one was
+  for (std::size_t i = 0; i < other.markers.size(); ++i) {
+    const ShapeMarker& there = example.reference.markers[7 * i % other.markers.size()];
+    other.markers[i].x_in_shape_m = there.x_in_shape_m;
+  }
+  example.Add("cube", other);
+  const Json verdict = example.Data()["verdict"];
+  EXPECT_EQ(verdict["level"], "bad");
+  EXPECT_THAT(verdict["text"].get<std::string>(),
+              StartsWith("The two shapes are not of the same object: "));
+  EXPECT_THAT(verdict["items"].dump(), Not(HasSubstr("larger than the reference")));
+  std::ostringstream text;
+  PrintMetrics(MakeComparisonReport(example.series), text);
+  EXPECT_THAT(text.str(), StartsWith("verdict: bad\nverdict_reason: bad; the two shapes are not"));
+
+  // In a series, the others can still be compared.
+  example.Add("trim2", Fuller());
+  const Json series = example.Data()["verdict"];
+  EXPECT_EQ(series["level"], "bad");
+  EXPECT_THAT(series["text"].get<std::string>(), HasSubstr("cube is of another object, trim2 "));
+  EXPECT_THAT(series["items"].at(0).get<std::string>(),
+              StartsWith("cube: the two shapes are not of the same object"));
+  PageExample good;
+  good.Add("trim2", Fuller());
+  EXPECT_EQ(good.Data()["verdict"]["level"], "");
+}
+
+TEST(ComparisonPage, AnotherSizeIsToBeChecked) {
+  PageExample example;
+  MarkerShape larger = BoatShape(0.001);
+  for (ShapeMarker& marker : larger.markers) {
+    for (auto& x : marker.x_in_shape_m) *x *= 1.25;
+  }
+  example.Add("trim2", larger);
+  const Json verdict = example.Data()["verdict"];
+  EXPECT_EQ(verdict["level"], "check");
+  EXPECT_THAT(verdict["text"].get<std::string>(), StartsWith("The shapes differ by "));
+  EXPECT_THAT(verdict["items"].at(0).get<std::string>(),
+              StartsWith("The shape is 1.25 times as large as the reference"));
+}
+
 // Two results that differ by what their markers share, such as their size, differ as little by
 // their surfaces as by their markers.
 TEST(ComparisonPage, SurfacesAreAsUncertainAsTheirMarkers) {

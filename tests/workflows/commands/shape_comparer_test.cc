@@ -208,9 +208,49 @@ TEST_F(ShapeComparerTest, AMeshInAnotherUnit) {
   WriteMesh("mm.ply", 1e3);
   WriteMesh("small.ply", 1e-3);
   ExpectError(Compare("mm.ply"), 2, "give --reference_unit mm");
-  ExpectError(Compare("small.ply"), 2, "give --reference_unit m");
+  ExpectError(Compare("small.ply"), 2,
+              "check that it is a surface of the same object; if it is right as it is, "
+              "give --reference_unit m");
   EXPECT_EQ(Compare("mm.ply", {"--reference_unit", "mm", "--part", "sail"}).exit_code, 0);
   ExpectError(Compare("mm.ply", {"--reference_unit", "inch"}), 2, "give m or mm");
+}
+
+TEST_F(ShapeComparerTest, AShapeInMillimetresIsRefused) {
+  MarkerShape in_mm = BoatShape(0.001);
+  for (ShapeMarker& marker : in_mm.markers) {
+    for (auto& x : marker.x_in_shape_m) *x *= 1e3;
+  }
+  WriteShape("mm/shape", in_mm);
+  const std::string wrong = "mm/shape: is 1000 times as large as ";
+  ExpectError(Compare("mm/shape"), 2, wrong);
+  ExpectError(Compare("mm/shape"), 2, "give metres, not millimetres");
+  ExpectError(Compare("b/shape", {"--series_paths", path("mm/shape")}), 2, wrong);
+  const auto compare_mm = [&](const std::string& reference, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"shape_comparer", "--shape_path", path("mm/shape"),
+                                          "--reference_path", path(reference)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunVelamap(arguments);
+  };
+  ExpectError(compare_mm("b/shape", {}), 2, wrong);
+  // Where there is no other shape, or it is as wrong, the markers tell.
+  ExpectError(compare_mm("mm/shape", {}), 2, "sides of 100 m, expected at most 10 m");
+  WriteMesh("design.ply", 1.0);
+  ExpectError(compare_mm("design.ply", {}), 2, "sides of 100 m, expected at most 10 m");
+  ExpectError(compare_mm("design.ply", {"--layout_path", path("layout.yml")}), 2,
+              "1000 times as large as the layout says: give metres");
+}
+
+TEST_F(ShapeComparerTest, ShapesOfDifferentObjectsGetABadVerdict) {
+  MarkerShape other = BoatShape(0.001);  // each marker where another one was
+  for (std::size_t i = 0; i < other.markers.size(); ++i) {
+    other.markers[i].x_in_shape_m = BoatShape().markers[7 * i % other.markers.size()].x_in_shape_m;
+  }
+  WriteShape("other/shape", other);
+  const ProgramRun run = Compare("other/shape");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("verdict: bad\nverdict_reason: bad; the two shapes are not of the "
+                                 "same object: "));
+  EXPECT_THAT(Compare("b/shape").out, Not(HasSubstr("verdict")));
 }
 
 TEST_F(ShapeComparerTest, JointUncertaintyIsUsedWhereItBelongs) {
