@@ -117,7 +117,7 @@ AlignmentSensitivity::Vector6d AlignmentSensitivity::MotionGradient(
 }
 
 std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
-    const PlacedMarker& marker, const Eigen::Vector3d& direction) const {
+    const MarkerInReference& marker, const Eigen::Vector3d& direction) const {
   std::map<CornerId, Eigen::Vector3d> sum;
   const auto add = [&](const CornerId& corner, const Eigen::Vector3d& gradient) {
     const auto [it, is_new] = sum.emplace(corner, gradient);
@@ -136,14 +136,14 @@ std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
 }
 
 std::optional<Eigen::MatrixXd> AlignmentSensitivity::JointCovariance(
-    const std::vector<PlacedMarker>& markers, ComparedShape whose,
+    const std::vector<MarkerInReference>& markers, ComparedShape whose,
     const PointCovariance& covariance) const {
   // The reference's errors enter with the opposite sign, which does not change the covariance.
   const Eigen::Quaterniond target_from_reference =
       whose == ComparedShape::kShape ? alignment_.reference_from_shape.rotation.conjugate()
                                      : Eigen::Quaterniond::Identity();
   std::vector<PointGradient> gradients;
-  for (const PlacedMarker& marker : markers) {
+  for (const MarkerInReference& marker : markers) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto by_corner = CenterGradient(marker, Eigen::Vector3d::Unit(axis));
       if (!HasAllCorners(covariance, by_corner)) return std::nullopt;
@@ -154,7 +154,7 @@ std::optional<Eigen::MatrixXd> AlignmentSensitivity::JointCovariance(
 }
 
 std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
-    const PlacedMarker& marker, const PointCovariance& shape,
+    const MarkerInReference& marker, const PointCovariance& shape,
     const PointCovariance* reference) const {
   const auto of_shape = JointCovariance({marker}, ComparedShape::kShape, shape);
   if (!of_shape) return std::nullopt;

@@ -22,7 +22,7 @@ namespace velamap {
 PointCovariance CovarianceFromSigmas(const MarkerShape& shape);
 
 // A whole marker of the shape in the frame of the reference.
-struct PlacedMarker {
+struct MarkerInReference {
   int marker_id = 0;
   Eigen::Vector3d center_in_reference_m = Eigen::Vector3d::Zero();
 };
@@ -38,13 +38,13 @@ class AlignmentSensitivity {
   // Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame
   // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
   // covariance lacks a corner of the marker or of the alignment.
-  std::optional<Eigen::Matrix3d> DifferenceCovariance(const PlacedMarker& marker,
+  std::optional<Eigen::Matrix3d> DifferenceCovariance(const MarkerInReference& marker,
                                                       const PointCovariance& shape,
                                                       const PointCovariance* reference) const;
 
   // The part of it that comes from the noise of one shape, jointly for several markers: three rows
   // for each.
-  std::optional<Eigen::MatrixXd> JointCovariance(const std::vector<PlacedMarker>& markers,
+  std::optional<Eigen::MatrixXd> JointCovariance(const std::vector<MarkerInReference>& markers,
                                                  ComparedShape whose,
                                                  const PointCovariance& covariance) const;
 
@@ -60,7 +60,7 @@ class AlignmentSensitivity {
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
   // Gradient of direction . (aligned centre) with respect to the aligned corners.
-  std::map<CornerId, Eigen::Vector3d> CenterGradient(const PlacedMarker& marker,
+  std::map<CornerId, Eigen::Vector3d> CenterGradient(const MarkerInReference& marker,
                                                      const Eigen::Vector3d& direction) const;
 
   const Alignment& alignment_;

@@ -10,7 +10,7 @@ SurfaceNoise::SurfaceNoise(const FittedSurface& fit, const MarkerShape& shape_in
                            const PointCovariance& covariance)
     : fit_(fit) {
   if (covariance.IsEmpty() || fit.marker_ids.empty()) return;
-  std::vector<PlacedMarker> markers;
+  std::vector<MarkerInReference> markers;
   for (const int id : fit.marker_ids) {
     markers.push_back({id, *FindWholeMarker(shape_in_reference, id)->x_in_shape_m[0]});
   }
