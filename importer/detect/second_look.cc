@@ -36,15 +36,11 @@ std::vector<Outline> UnreadOutlines(const std::vector<Outline>& read, std::vecto
 }
 
 cv::Mat EnlargedAndSharpened(const cv::Mat& gray) {
-  constexpr double kSigmaPx = 1.2, kAmount = 2.0;
-  // Sharpened first, because there are fewer pixels then; in single precision, because clipped
-  // pixels would shift edges.
-  cv::Mat sharpened, blurred, enlarged;
-  gray.convertTo(sharpened, CV_32F);
-  cv::GaussianBlur(sharpened, blurred, {}, kSigmaPx);
-  cv::addWeighted(sharpened, 1 + kAmount, blurred, -kAmount, 0, sharpened);
-  cv::resize(sharpened, enlarged, {}, kEnlargement, kEnlargement, cv::INTER_CUBIC);
-  enlarged.convertTo(enlarged, CV_8U);
+  constexpr double kSigmaPx = 1.2 * kEnlargement, kAmount = 2.0;
+  cv::Mat enlarged, blurred;
+  cv::resize(gray, enlarged, {}, kEnlargement, kEnlargement, cv::INTER_CUBIC);
+  cv::GaussianBlur(enlarged, blurred, {}, kSigmaPx);
+  cv::addWeighted(enlarged, 1 + kAmount, blurred, -kAmount, 0, enlarged);
   return enlarged;
 }
 
