@@ -85,7 +85,7 @@ std::optional<ComparisonDoubt> DoubtOf(const ShapeLikeness& likeness) {
 
 std::optional<ComparisonDoubt> DoubtOfSurfaceFit(const MarkerShape& shape, double distance_m,
                                                  int num_over_surface, int num_markers) {
-  constexpr double kMaxMisfit = 0.3, kMinShareOver = 0.25;
+  constexpr double kMinShareOver = 0.25;
   std::vector<Eigen::Vector3d> centers_m;
   for (const ShapeMarker& marker : shape.markers) {
     if (marker.IsWhole()) centers_m.push_back(*marker.x_in_shape_m[0]);

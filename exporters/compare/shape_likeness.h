@@ -11,6 +11,9 @@
 
 namespace velamap {
 
+// A misfit above this is that of another object: no trim of a sail comes near.
+inline constexpr double kMaxMisfit = 0.3;
+
 // Of the common markers of one part, after an alignment with scale.
 struct ShapeLikeness {
   double scale = 1.0;       // shape / reference
@@ -20,7 +23,7 @@ struct ShapeLikeness {
   // between a sail on one tack and on the other.
   double misfit = 0.0;
 
-  bool IsOfAnotherObject() const { return misfit > 0.3; }
+  bool IsOfAnotherObject() const { return misfit > kMaxMisfit; }
 };
 
 // Takes the part that agrees best, because another one may have been trimmed. Parts are those of

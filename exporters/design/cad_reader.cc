@@ -1,7 +1,5 @@
 #include "exporters/design/cad_reader.h"
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <new>
@@ -110,13 +108,6 @@ TriangleMesh MeshFaces(const TopoDS_Shape& shape, double chord_deviation_mm) {
 }
 
 }  // namespace
-
-std::string LowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 TriangleMesh ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);

@@ -9,9 +9,6 @@
 
 namespace velamap {
 
-// The extension of a path with its dot, in lower case.
-std::string LowerExtension(const std::filesystem::path& path);
-
 // Reads .step, .stp, .iges and .igs files (extensions in upper or lower case) and converts their
 // unit. The mesh has no normals; its triangles have the orientation of their face. Throws
 // InputError naming the file if it has another extension, is cut off, cannot be read, or has no

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "exporters/design/cad_reader.h"
 #include "exporters/design/mesh_parser.h"
 #include "exporters/design/mesh_process.h"
 #include "exporters/formats/mesh_writer.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 

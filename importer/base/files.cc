@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <deque>
@@ -148,6 +149,13 @@ fs::path CanonicalPath(const fs::path& path) {
 fs::path AbsoluteFolder(const fs::path& path) {
   const fs::path absolute = AbsolutePath(path);
   return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 std::vector<fs::path> FolderEntries(const fs::path& folder) {

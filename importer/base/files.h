@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,9 @@ std::filesystem::path CanonicalPath(const std::filesystem::path& path);
 
 // AbsolutePath() without the trailing slash, so that its parent is the folder that holds it.
 std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
+
+// The extension of a path with its dot, in lower case; empty without one.
+std::string LowerExtension(const std::filesystem::path& path);
 
 // Everything in the folder, sorted by name.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);

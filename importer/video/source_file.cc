@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -55,19 +54,11 @@ SourceFile SourceWithoutHash(const std::string& path) {
   return source;
 }
 
-// In lower case.
-std::string FileEnding(const std::string& name) {
-  std::string ending = std::filesystem::path(name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 // The first of the names with one of the endings; empty for none.
 std::string FirstWithEnding(const std::vector<std::string>& names,
                             const std::set<std::string>& endings) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-    return endings.count(FileEnding(name)) > 0;
+    return endings.count(LowerExtension(name)) > 0;
   });
   return found == names.end() ? "" : *found;
 }
@@ -78,7 +69,8 @@ bool HasImageExtension(const std::string& path) {
   static constexpr std::array<const char*, 16> kExtensions = {
       ".jpg",  ".jpeg", ".jpe", ".png", ".tif", ".tiff", ".bmp", ".dib",
       ".webp", ".jp2",  ".pgm", ".ppm", ".pbm", ".pnm",  ".ras", ".exr"};
-  return std::find(kExtensions.begin(), kExtensions.end(), FileEnding(path)) != kExtensions.end();
+  return std::find(kExtensions.begin(), kExtensions.end(), LowerExtension(path)) !=
+         kExtensions.end();
 }
 
 std::string RemedyForNoImages(const std::filesystem::path& folder,

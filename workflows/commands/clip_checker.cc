@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -74,10 +71,7 @@ void RefuseUnusedOptions(const ClipCheckerCommandOptions& options) {
 
 // A picture in PNG under the name of a JPEG would replace a photograph with what its name denies.
 void CheckPictureName(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (path.empty() || extension == ".png") return;
+  if (path.empty() || LowerExtension(path) == ".png") return;
   throw InputError(fmt::format(
       "--output_path: {} does not end in .png, and the picture is a PNG; give a name such as "
       "frame.png",

@@ -126,25 +126,30 @@ MarkerShape BentBoatShape(double sigma_m) {
   return shape;
 }
 
-TriangleMesh SailMesh(double margin_m) {
-  constexpr int kCells = 120;
-  const double edge_u = margin_m / kFootM, edge_v = margin_m / kHeightM;
+TriangleMesh GridMesh(int num_u, int num_v,
+                      const std::function<Eigen::Vector3d(double u, double v)>& at) {
   TriangleMesh mesh;
-  for (int j = 0; j <= kCells; ++j) {
-    for (int i = 0; i <= kCells; ++i) {
-      const double u = 0.05 - edge_u + (0.9 + 2 * edge_u) * i / kCells;
-      const double v = -edge_v + (1 + 2 * edge_v) * j / kCells;
-      mesh.vertices_m.push_back(SailPoint(u, v));
+  for (int j = 0; j <= num_v; ++j) {
+    for (int i = 0; i <= num_u; ++i) {
+      mesh.vertices_m.push_back(at(static_cast<double>(i) / num_u, static_cast<double>(j) / num_v));
     }
   }
-  for (int j = 0; j < kCells; ++j) {
-    for (int i = 0; i < kCells; ++i) {
-      const int a = j * (kCells + 1) + i, b = a + 1, c = a + kCells + 1, d = c + 1;
+  for (int j = 0; j < num_v; ++j) {
+    for (int i = 0; i < num_u; ++i) {
+      const int a = j * (num_u + 1) + i, b = a + 1, c = a + num_u + 1, d = c + 1;
       mesh.triangles.push_back({a, b, d});
       mesh.triangles.push_back({a, d, c});
     }
   }
   return mesh;
+}
+
+TriangleMesh SailMesh(double margin_m) {
+  constexpr int kCells = 120;
+  const double edge_u = margin_m / kFootM, edge_v = margin_m / kHeightM;
+  return GridMesh(kCells, kCells, [&](double u, double v) {
+    return SailPoint(0.05 - edge_u + (0.9 + 2 * edge_u) * u, -edge_v + (1 + 2 * edge_v) * v);
+  });
 }
 
 UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
@@ -215,21 +220,9 @@ Rigid3 FarPose() {
 }
 
 TriangleMesh PlaneMesh(double half_m, int num_cells) {
-  TriangleMesh mesh;
-  for (int j = 0; j <= num_cells; ++j) {
-    for (int i = 0; i <= num_cells; ++i) {
-      mesh.vertices_m.emplace_back(half_m * (2.0 * i / num_cells - 1),
-                                   half_m * (2.0 * j / num_cells - 1), 0.0);
-    }
-  }
-  for (int j = 0; j < num_cells; ++j) {
-    for (int i = 0; i < num_cells; ++i) {
-      const int a = j * (num_cells + 1) + i, b = a + 1, c = a + num_cells + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  }
-  return mesh;
+  return GridMesh(num_cells, num_cells, [&](double u, double v) {
+    return Eigen::Vector3d(half_m * (2 * u - 1), half_m * (2 * v - 1), 0.0);
+  });
 }
 
 TriangleMesh SphereMesh(double radius_m, int num_rings) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 
@@ -46,6 +47,10 @@ MarkerShape WithJib(MarkerShape shape);
 // A rotation by 70 degrees and a translation by metres.
 Rigid3 FarPose();
 
+// A grid of num_u x num_v cells over the unit square, with its vertices at `at`. The normals point
+// along the cross product of the derivatives with respect to u and v.
+TriangleMesh GridMesh(int num_u, int num_v,
+                      const std::function<Eigen::Vector3d(double u, double v)>& at);
 // A square of side 2 half_m in the plane z = 0 with normal +z, as a grid of cells.
 TriangleMesh PlaneMesh(double half_m, int num_cells);
 // A closed sphere about the origin with outward normals.

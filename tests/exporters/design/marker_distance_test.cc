@@ -16,23 +16,10 @@ constexpr double kRadius_m = 1.0, kSide_m = 0.1;
 
 // A cylinder about z from 0 to `end_rad`, with outward normals.
 TriangleMesh CylinderMesh(double end_rad) {
-  constexpr int kNumAround = 200, kNumUp = 10;
-  TriangleMesh mesh;
-  for (int j = 0; j <= kNumUp; ++j) {
-    for (int i = 0; i <= kNumAround; ++i) {
-      const double angle = end_rad * i / kNumAround;
-      mesh.vertices_m.emplace_back(kRadius_m * std::cos(angle), kRadius_m * std::sin(angle),
-                                   2.0 * j / kNumUp - 1.0);
-    }
-  }
-  for (int j = 0; j < kNumUp; ++j) {
-    for (int i = 0; i < kNumAround; ++i) {
-      const int a = j * (kNumAround + 1) + i, b = a + 1, c = a + kNumAround + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  }
-  return mesh;
+  return GridMesh(200, 10, [&](double u, double v) {
+    const double angle = end_rad * u;
+    return Eigen::Vector3d(kRadius_m * std::cos(angle), kRadius_m * std::sin(angle), 2 * v - 1);
+  });
 }
 
 // A marker whose corners are at `radius_m` from the axis of the cylinder, turned by `turn_rad` in
