@@ -44,17 +44,7 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   return block;
 }
 
-PointGradient RotatedInto(const Eigen::Quaterniond& target_from_reference,
-                          const std::map<CornerId, Eigen::Vector3d>& by_corner) {
-  PointGradient rotated;
-  for (const auto& [corner, gradient] : by_corner) {
-    rotated.emplace_back(Point3DIdFromCorner(corner), target_from_reference * gradient);
-  }
-  return rotated;
-}
-
-bool HasAllCorners(const PointCovariance& covariance,
-                   const std::map<CornerId, Eigen::Vector3d>& by_corner) {
+bool HasAllCorners(const PointCovariance& covariance, const CornerGradient& by_corner) {
   return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
     return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
   });
@@ -116,50 +106,61 @@ AlignmentSensitivity::Vector6d AlignmentSensitivity::MotionGradient(
   return gradient;
 }
 
-std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
-    const MarkerInReference& marker, const Eigen::Vector3d& direction) const {
-  std::map<CornerId, Eigen::Vector3d> sum;
-  const auto add = [&](const CornerId& corner, const Eigen::Vector3d& gradient) {
-    const auto [it, is_new] = sum.emplace(corner, gradient);
-    if (!is_new) it->second += gradient;
-  };
-  for (int corner = 1; corner <= kNumCorners; ++corner) {
-    add({marker.marker_id, corner}, direction / kNumCorners);
-  }
-  const Vector6d by_motion =
-      inverse_normal_ * MotionGradient(marker.center_in_reference_m, direction);
+void AlignmentSensitivity::AddAlignment(const Eigen::Vector3d& x_in_reference_m,
+                                        const Eigen::Vector3d& direction,
+                                        CornerGradient* gradient) const {
+  const Vector6d by_motion = inverse_normal_ * MotionGradient(x_in_reference_m, direction);
   for (const AlignmentEquation& equation : alignment_.equations) {
     const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
-    add(equation.corner, -equation.weight * by_motion.dot(row) * equation.direction);
+    const Eigen::Vector3d part = -equation.weight * by_motion.dot(row) * equation.direction;
+    const auto [it, is_new] = gradient->emplace(equation.corner, part);
+    if (!is_new) it->second += part;
   }
-  return sum;
 }
 
-std::optional<Eigen::MatrixXd> AlignmentSensitivity::JointCovariance(
-    const std::vector<MarkerInReference>& markers, ComparedShape whose,
-    const PointCovariance& covariance) const {
-  // The reference's errors enter with the opposite sign, which does not change the covariance.
+PointGradient AlignmentSensitivity::InFrameOf(ComparedShape whose,
+                                              const CornerGradient& gradient) const {
   const Eigen::Quaterniond target_from_reference =
       whose == ComparedShape::kShape ? alignment_.reference_from_shape.rotation.conjugate()
                                      : Eigen::Quaterniond::Identity();
-  std::vector<PointGradient> gradients;
-  for (const MarkerInReference& marker : markers) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto by_corner = CenterGradient(marker, Eigen::Vector3d::Unit(axis));
-      if (!HasAllCorners(covariance, by_corner)) return std::nullopt;
-      gradients.push_back(RotatedInto(target_from_reference, by_corner));
-    }
+  PointGradient rotated;
+  for (const auto& [corner, value] : gradient) {
+    rotated.emplace_back(Point3DIdFromCorner(corner), target_from_reference * value);
   }
-  return JointCovarianceOf(covariance, gradients);
+  return rotated;
+}
+
+std::optional<double> AlignmentSensitivity::VarianceAt(const Eigen::Vector3d& x_in_reference_m,
+                                                       const Eigen::Vector3d& direction,
+                                                       CornerGradient own, ComparedShape whose,
+                                                       const PointCovariance& covariance) const {
+  AddAlignment(x_in_reference_m, direction, &own);
+  if (!HasAllCorners(covariance, own)) return std::nullopt;
+  return VarianceOf(covariance, InFrameOf(whose, own));
+}
+
+std::optional<Eigen::Matrix3d> AlignmentSensitivity::CenterCovariance(
+    const MarkerInReference& marker, ComparedShape whose, const PointCovariance& covariance) const {
+  std::vector<PointGradient> gradients;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
+    CornerGradient gradient;
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      gradient[{marker.marker_id, corner}] = direction / kNumCorners;
+    }
+    AddAlignment(marker.center_in_reference_m, direction, &gradient);
+    if (!HasAllCorners(covariance, gradient)) return std::nullopt;
+    gradients.push_back(InFrameOf(whose, gradient));
+  }
+  return Eigen::Matrix3d(JointCovarianceOf(covariance, gradients));
 }
 
 std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
     const MarkerInReference& marker, const PointCovariance& shape,
     const PointCovariance* reference) const {
-  const auto of_shape = JointCovariance({marker}, ComparedShape::kShape, shape);
-  if (!of_shape) return std::nullopt;
-  if (reference == nullptr) return Eigen::Matrix3d(*of_shape);
-  const auto of_reference = JointCovariance({marker}, ComparedShape::kReference, *reference);
+  const auto of_shape = CenterCovariance(marker, ComparedShape::kShape, shape);
+  if (!of_shape || reference == nullptr) return of_shape;
+  const auto of_reference = CenterCovariance(marker, ComparedShape::kReference, *reference);
   if (!of_reference) return std::nullopt;
   return Eigen::Matrix3d(*of_shape + *of_reference);
 }

@@ -27,6 +27,9 @@ struct MarkerInReference {
   Eigen::Vector3d center_in_reference_m = Eigen::Vector3d::Zero();
 };
 
+// The derivative of a function with respect to each corner, frame of the reference.
+using CornerGradient = std::map<CornerId, Eigen::Vector3d>;
+
 // Which of the two shapes a covariance belongs to.
 enum class ComparedShape { kShape, kReference };
 
@@ -42,11 +45,12 @@ class AlignmentSensitivity {
                                                       const PointCovariance& shape,
                                                       const PointCovariance* reference) const;
 
-  // The part of it that comes from the noise of one shape, jointly for several markers: three rows
-  // for each.
-  std::optional<Eigen::MatrixXd> JointCovariance(const std::vector<MarkerInReference>& markers,
-                                                 ComparedShape whose,
-                                                 const PointCovariance& covariance) const;
+  // Variance, m^2, that the noise of one shape gives to a place on it along a direction, both in
+  // the frame of the reference. `own` is the gradient of the place along the direction without what
+  // its corners do to the alignment. Nothing if the covariance lacks one of the corners.
+  std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
+                                   const Eigen::Vector3d& direction, CornerGradient own,
+                                   ComparedShape whose, const PointCovariance& covariance) const;
 
   // Number of the six rigid motions that the equations do not determine, such as the rotations of a
   // sphere.
@@ -59,9 +63,17 @@ class AlignmentSensitivity {
   // 1 / radius_m_.
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
-  // Gradient of direction . (aligned centre) with respect to the aligned corners.
-  std::map<CornerId, Eigen::Vector3d> CenterGradient(const MarkerInReference& marker,
-                                                     const Eigen::Vector3d& direction) const;
+  // Adds to the gradient of direction . (a place of the aligned shape) what its corners do to the
+  // alignment.
+  void AddAlignment(const Eigen::Vector3d& x_in_reference_m, const Eigen::Vector3d& direction,
+                    CornerGradient* gradient) const;
+  // As a function of the corners of one shape in its own frame. The reference's errors enter with
+  // the opposite sign, which does not change a covariance.
+  PointGradient InFrameOf(ComparedShape whose, const CornerGradient& gradient) const;
+  // Of the centre of a marker, from the noise of one shape.
+  std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker,
+                                                  ComparedShape whose,
+                                                  const PointCovariance& covariance) const;
 
   const Alignment& alignment_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();

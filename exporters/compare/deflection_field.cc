@@ -38,8 +38,8 @@ DeflectionField FieldBetween(const ShapeDeviation& deviation, const PointCovaria
   const FittedSurface of_shape = FitSurface(CollectSurfaceInput(common, part));
   const FittedSurface of_reference = FitSurface(CollectSurfaceInput(common_of_reference, part));
   const AlignmentSensitivity sensitivity(deviation.alignment);
-  const SurfaceNoise noise(of_shape, common, ComparedShape::kShape, sensitivity, covariance),
-      noise_of_reference(of_reference, common_of_reference, ComparedShape::kReference, sensitivity,
+  const SurfaceNoise noise(of_shape, ComparedShape::kShape, sensitivity, covariance),
+      noise_of_reference(of_reference, ComparedShape::kReference, sensitivity,
                          reference.covariance);
   DeflectionField field{part.name, MakeGrid(of_reference.surface, options), {}};
   if (!FacesLikeMarkers(of_reference, reference.shape)) {
@@ -67,8 +67,7 @@ DeflectionField FieldFrom(const MeshDistance& design, const ShapeDeviation& devi
   const double design_variance_m2 = deviation.surface_sigma_m * deviation.surface_sigma_m;
   const FittedSurface fit = FitSurface(CollectSurfaceInput(deviation.aligned_shape, part));
   const AlignmentSensitivity sensitivity(deviation.alignment);
-  const SurfaceNoise noise(fit, deviation.aligned_shape, ComparedShape::kShape, sensitivity,
-                           covariance);
+  const SurfaceNoise noise(fit, ComparedShape::kShape, sensitivity, covariance);
   DeflectionField field{part.name, MakeGrid(fit.surface, options), {}};
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
     const Eigen::Vector2d& at = field.reference.surface_parameters[i];

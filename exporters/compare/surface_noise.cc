@@ -1,33 +1,28 @@
 #include "exporters/compare/surface_noise.h"
 
 #include <algorithm>
-#include <vector>
+#include <utility>
 
 namespace velamap {
 
-SurfaceNoise::SurfaceNoise(const FittedSurface& fit, const MarkerShape& shape_in_reference,
-                           ComparedShape whose, const AlignmentSensitivity& sensitivity,
+SurfaceNoise::SurfaceNoise(const FittedSurface& fit, ComparedShape whose,
+                           const AlignmentSensitivity& sensitivity,
                            const PointCovariance& covariance)
-    : fit_(fit) {
-  if (covariance.IsEmpty() || fit.marker_ids.empty()) return;
-  std::vector<MarkerInReference> markers;
-  for (const int id : fit.marker_ids) {
-    markers.push_back({id, *FindWholeMarker(shape_in_reference, id)->x_in_shape_m[0]});
-  }
-  covariance_m2_ = sensitivity.JointCovariance(markers, whose, covariance);
-}
+    : fit_(fit), whose_(whose), sensitivity_(sensitivity), covariance_(covariance) {}
 
 std::optional<double> SurfaceNoise::VarianceAt(double u, double v,
                                                const Eigen::Vector3d& direction) const {
   const std::optional<SurfaceDependence> dependence = DependenceAt(fit_, u, v);
-  if (!dependence || !covariance_m2_) return std::nullopt;
-  const Eigen::VectorXd& weights = dependence->marker_weights;
-  Eigen::VectorXd gradient(3 * weights.size());
-  for (Eigen::Index k = 0; k < weights.size(); ++k) {
-    gradient.segment<3>(3 * k) = weights[k] * direction;
+  if (!dependence) return std::nullopt;
+  CornerGradient own;
+  for (std::size_t k = 0; k < fit_.points.size(); ++k) {
+    own[fit_.points[k]] = dependence->point_weights[static_cast<Eigen::Index>(k)] * direction;
   }
-  const double of_markers_m2 = gradient.dot(*covariance_m2_ * gradient);
-  return std::max(of_markers_m2, dependence->noise_variance_m2) + dependence->smoothing_variance_m2;
+  const auto of_markers_m2 = sensitivity_.VarianceAt(EvaluatePoint(fit_.surface, u, v), direction,
+                                                     std::move(own), whose_, covariance_);
+  if (!of_markers_m2) return std::nullopt;
+  return std::max(*of_markers_m2, dependence->noise_variance_m2) +
+         dependence->smoothing_variance_m2;
 }
 
 }  // namespace velamap

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "exporters/compare/comparison_sigma.h"
-#include "exporters/shape/marker_shape.h"
 #include "exporters/surface/surface.h"
 #include "reconstruct/geometry/point_covariance.h"
 
@@ -16,9 +15,9 @@ namespace velamap {
 
 class SurfaceNoise {
  public:
-  // `fit` belongs to the markers of `shape_in_reference`. `covariance` is that of the corners of
-  // the shape or of its reference (`whose`), in its own frame. `fit` must outlive this.
-  SurfaceNoise(const FittedSurface& fit, const MarkerShape& shape_in_reference, ComparedShape whose,
+  // `fit` belongs to the markers of the shape or of its reference (`whose`), in the frame of the
+  // reference. `covariance` is that of its corners, in its own frame. All must outlive this.
+  SurfaceNoise(const FittedSurface& fit, ComparedShape whose,
                const AlignmentSensitivity& sensitivity, const PointCovariance& covariance);
 
   // Variance of the surface at a place along a unit vector: from the noise of its markers, from
@@ -29,7 +28,9 @@ class SurfaceNoise {
 
  private:
   const FittedSurface& fit_;
-  std::optional<Eigen::MatrixXd> covariance_m2_;  // three rows for each marker of the fit
+  const ComparedShape whose_;
+  const AlignmentSensitivity& sensitivity_;
+  const PointCovariance& covariance_;
 };
 
 }  // namespace velamap

@@ -11,6 +11,7 @@
 #include "exporters/surface/surface_feet.h"
 #include "exporters/surface/surface_parameters.h"
 #include "exporters/surface/surface_smoother.h"
+#include "exporters/surface/surface_terms.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -51,47 +52,6 @@ SortedInput SortInput(const SurfaceInput& input) {
   return sorted;
 }
 
-// The sigma of every marker, and the way of smoothing that follows from the sigmas.
-struct Noise {
-  std::map<int, double> sigma_m;
-  double edge_sigma_m = 1.0;
-  Smoothing smoothing = Smoothing::kCrossValidation;
-};
-
-Noise DescribeNoise(const SortedInput& sorted) {
-  std::vector<double> known;
-  bool some_zero = false;
-  for (const auto& [id, marker] : sorted.by_id) {
-    const std::optional<double>& sigma = marker.sigma_m;
-    if (sigma && *sigma > 0) known.push_back(*sigma);
-    some_zero = some_zero || (sigma && *sigma <= 0);
-  }
-  Noise noise;
-  if (some_zero || (known.empty() && sorted.by_id.size() < kMinCrossValidated)) {
-    noise.smoothing = Smoothing::kInterpolate;
-  } else if (!known.empty()) {
-    if (sorted.by_id.size() < kMinCrossValidated) noise.smoothing = Smoothing::kKnownSigma;
-    noise.edge_sigma_m = Median(known);
-  }
-  for (const auto& [id, marker] : sorted.by_id) {
-    noise.sigma_m[id] = noise.smoothing == Smoothing::kInterpolate
-                            ? 1.0
-                            : marker.sigma_m.value_or(noise.edge_sigma_m);
-  }
-  return noise;
-}
-
-std::vector<double> NoiseWeights(const std::vector<SurfaceObservation>& observations,
-                                 const Noise& noise) {
-  std::vector<double> weights;
-  for (const SurfaceObservation& observation : observations) {
-    const double sigma_m =
-        observation.marker_id < 0 ? noise.edge_sigma_m : noise.sigma_m.at(observation.marker_id);
-    weights.push_back(1.0 / (sigma_m * sigma_m));
-  }
-  return weights;
-}
-
 bool IsInside(const SurfaceFoot& foot) {
   return std::min(foot.u, foot.v) > kInside && std::max(foot.u, foot.v) < 1 - kInside;
 }
@@ -102,9 +62,16 @@ std::vector<Eigen::Vector3d> Centers(const std::vector<SurfaceMarker>& markers) 
   return centers;
 }
 
-void SetSides(const std::map<int, SurfaceMarker>& by_id, SurfaceParameters* parameters) {
+// The corners start at the place of their marker.
+void SetCorners(const std::map<int, SurfaceMarker>& by_id, SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
-    if (observation.marker_id >= 0) observation.side_m = by_id.at(observation.marker_id).side_m;
+    if (observation.marker_id < 0 || observation.points.size() > 1) continue;
+    const auto& corners_m = by_id.at(observation.marker_id).corners_in_shape_m;
+    if (corners_m.empty()) continue;
+    observation.points.clear();
+    for (const Eigen::Vector3d& x : corners_m) {
+      observation.points.push_back({x, observation.u, observation.v});
+    }
   }
 }
 
@@ -115,10 +82,22 @@ void AddBetween(const SortedInput& sorted, const SplineSurface& surface,
   const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
   for (std::size_t k = 0; k < feet.size(); ++k) {
     if (!IsInside(feet[k])) continue;
+    const double u = feet[k].u, v = feet[k].v;
     parameters->observations.push_back(
-        {markers[k].marker_id, "", markers[k].x_in_shape_m, feet[k].u, feet[k].v});
+        {markers[k].marker_id, "", u, v, {{markers[k].x_in_shape_m, u, v}}});
   }
-  SetSides(sorted.by_id, parameters);
+  SetCorners(sorted.by_id, parameters);
+}
+
+// Mean distance of the points from the surface, along its normals.
+double DistanceOf(const SplineSurface& surface, SurfaceObservation observation) {
+  MoveToFeet(surface, &observation);
+  double sum_m = 0.0;
+  for (const PlacedPoint& point : observation.points) {
+    const SurfaceJet jet = EvaluateJet(surface, point.u, point.v);
+    sum_m += jet.normal.dot(point.x_in_shape_m - jet.x);
+  }
+  return sum_m / static_cast<double>(observation.points.size());
 }
 
 std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
@@ -129,44 +108,66 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
     if (observation.marker_id >= 0) used[observation.marker_id] = &observation;
   }
   std::vector<SurfaceMarker> markers;
-  for (const auto& [id, marker] : sorted.by_id) {
-    markers.push_back(marker);
-    const auto observation = used.find(id);
-    if (observation != used.end()) markers.back().x_in_shape_m = observation->second->OnCloth();
-  }
+  for (const auto& [id, marker] : sorted.by_id) markers.push_back(marker);
   const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
   std::vector<SurfaceResidual> residuals;
   for (std::size_t k = 0; k < markers.size(); ++k) {
+    residuals.push_back({markers[k].marker_id, "", feet[k].u, feet[k].v, feet[k].distance_m,
+                         feet[k].beyond_edge_m, false});
     const auto observation = used.find(markers[k].marker_id);
-    const bool is_used = observation != used.end();
-    residuals.push_back({markers[k].marker_id, is_used ? observation->second->line : "", feet[k].u,
-                         feet[k].v, feet[k].distance_m, feet[k].beyond_edge_m, is_used});
+    if (observation == used.end()) continue;
+    residuals.back().line = observation->second->line;
+    residuals.back().distance_m = DistanceOf(surface, *observation->second);
+    residuals.back().is_used = true;
   }
   return residuals;
 }
 
-// Sets what each marker adds to the poles. A point of a given edge errs like the nearest marker.
-void AddDependence(const SurfaceParameters& parameters, const SmoothSurface& smooth,
-                   FittedSurface* result) {
+// Sets what each point of a marker adds to the poles. A point of a given edge errs like the nearest
+// marker.
+void AddDependence(const SurfaceParameters& parameters, const std::vector<SurfaceTerm>& terms,
+                   const SmoothSurface& smooth, FittedSurface* result) {
   const auto& observations = parameters.observations;
-  if (smooth.pole_by_observation.size() == 0) return;
-  std::vector<const SurfaceObservation*> markers;
-  for (const SurfaceObservation& observation : observations) {
-    if (observation.marker_id < 0) continue;
-    markers.push_back(&observation);
-    result->marker_ids.push_back(observation.marker_id);
-  }
-  result->smoothing_covariance_m2 = smooth.smoothing_covariance_m2;
-  result->pole_by_marker = Eigen::MatrixXd::Zero(smooth.pole_by_observation.rows(), markers.size());
+  if (smooth.pole_by_term.size() == 0) return;
+  std::vector<std::size_t> markers;
+  std::map<std::size_t, Eigen::Index> first_point;  // by marker
   for (std::size_t k = 0; k < observations.size(); ++k) {
-    const auto distance_m = [&](const SurfaceObservation* marker) {
-      return (marker->x_in_shape_m - observations[k].x_in_shape_m).norm();
-    };
-    const auto nearest = std::min_element(
-        markers.begin(), markers.end(),
-        [&](const auto* a, const auto* b) { return distance_m(a) < distance_m(b); });
-    result->pole_by_marker.col(nearest - markers.begin()) += smooth.pole_by_observation.col(k);
+    if (observations[k].marker_id < 0) continue;
+    markers.push_back(k);
+    first_point[k] = static_cast<Eigen::Index>(result->points.size());
+    const int num_points = static_cast<int>(observations[k].points.size());
+    for (int i = 0; i < num_points; ++i) {
+      result->points.push_back({observations[k].marker_id, num_points == 1 ? 0 : i + 1});
+    }
   }
+  const auto center = [&](std::size_t k) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const PlacedPoint& point : observations[k].points) sum += point.x_in_shape_m;
+    return Eigen::Vector3d(sum / static_cast<double>(observations[k].points.size()));
+  };
+  result->smoothing_covariance_m2 = smooth.smoothing_covariance_m2;
+  result->pole_by_point = Eigen::MatrixXd::Zero(smooth.pole_by_term.rows(), result->points.size());
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    std::size_t marker = terms[t].observation_idx;
+    std::vector<double> factors = terms[t].factors;
+    if (observations[marker].marker_id < 0) {
+      const Eigen::Vector3d x = center(marker);
+      marker = *std::min_element(markers.begin(), markers.end(), [&](std::size_t a, std::size_t b) {
+        return (center(a) - x).norm() < (center(b) - x).norm();
+      });
+      const std::size_t n = observations[marker].points.size();
+      factors.assign(n, 1.0 / n);
+    }
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      result->pole_by_point.col(first_point[marker] + static_cast<Eigen::Index>(i)) +=
+          factors[i] * smooth.pole_by_term.col(static_cast<Eigen::Index>(t));
+    }
+  }
+}
+
+bool HasTilts(const SortedInput& sorted) {
+  return std::any_of(sorted.by_id.begin(), sorted.by_id.end(),
+                     [](const auto& entry) { return !entry.second.corners_in_shape_m.empty(); });
 }
 
 void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name,
@@ -212,9 +213,9 @@ std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
 }
 
 std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v) {
-  if (fit.pole_by_marker.size() == 0) return std::nullopt;
+  if (fit.pole_by_point.size() == 0) return std::nullopt;
   SurfaceDependence dependence;
-  dependence.marker_weights = (PoleShares(fit.surface, u, v) * fit.pole_by_marker).transpose();
+  dependence.point_weights = (PoleShares(fit.surface, u, v) * fit.pole_by_point).transpose();
   const auto variance_m2 = [&](const Eigen::MatrixXd& pole_covariance_m2) {
     return std::pow(SigmaAt(fit.surface, pole_covariance_m2, u, v).value_or(0.0), 2);
   };
@@ -237,32 +238,41 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   options.Check();
   SortedInput sorted = SortInput(input);
   const SurfaceOptions ends = WithEdgesOf(input, options, &sorted);
-  const Noise noise = DescribeNoise(sorted);
-  SurfaceParameters parameters = AssignParameters(sorted.lines, !sorted.markers.empty(), ends);
-  const OpenSides open = OpenSidesOf(parameters, ends.edges);
-  SetSides(sorted.by_id, &parameters);
+  const MarkerNoise noise = DescribeNoise(sorted);
   // An interpolating surface keeps the chord lengths, which make the fairest curves through points.
   const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
+  const bool has_markers_between = !sorted.markers.empty();
+  SurfaceParameters parameters = AssignParameters(
+      sorted.lines, has_markers_between || (!interpolates && HasTilts(sorted)), ends);
+  const OpenSides open = OpenSidesOf(parameters, ends.edges);
+  SetCorners(sorted.by_id, &parameters);
   SmoothSurface smooth;
+  std::vector<SurfaceTerm> terms;
+  double tilt_noise = 1.0;
   for (int fit = 1; fit <= kNumFits; ++fit) {
     const bool is_parabolic = fit <= kNumParabolicFits && !interpolates;
-    smooth = SmoothObservations(parameters, NoiseWeights(parameters.observations, noise),
-                                is_parabolic ? Smoothing::kParabolas : noise.smoothing);
-    if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
+    terms = PlaceTerms(parameters.observations, noise);
+    if (!is_parabolic && !interpolates) {
+      AddTiltTerms(parameters.observations, noise, tilt_noise, &terms);
+    }
+    smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing);
     if (fit == kNumFits) break;
+    tilt_noise *= NoiseOfTilts(smooth, parameters.observations.size());
+    // Few markers do not show that their tilts are better than their sigmas say.
+    if (noise.smoothing == Smoothing::kKnownSigma) tilt_noise = std::max(tilt_noise, 1.0);
+    if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
     if (interpolates) {
       MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
     } else {
-      MoveToFeet(smooth.surface, open, &parameters);
+      MoveMarkersToFeet(smooth.surface, open, &parameters);
     }
-    SetSags(smooth.surface, &parameters);
   }
   CheckArea(sorted, ends, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;
   result.pole_covariance_m2 = smooth.pole_covariance_m2;
   result.num_effective_parameters = smooth.num_effective_parameters;
-  AddDependence(parameters, smooth, &result);
+  AddDependence(parameters, terms, smooth, &result);
   result.residuals = Residuals(sorted, parameters, smooth.surface);
   result.notes = sorted.notes;
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());

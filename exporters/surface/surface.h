@@ -12,6 +12,11 @@
 // penalty on third derivatives costs nothing for parabolas; the usual one on second derivatives
 // flattens the camber at luff and leech.
 //
+// The four corners of a marker give three observations x_k: their mean, and half the vectors
+// between the middles of opposite sides, which show how the cloth is tilted there. Tilts say most
+// about the surface between the lines. How noisy they are compared with the means follows from the
+// residuals.
+//
 // Generalized cross-validation decides on the weights a and b (Golub, Heath and Wahba, 1979);
 // sigmas weigh the markers against each other, and markers without one get the median. Fewer than
 // 30 markers with sigmas get the weights that minimize the expected error of the distances along
@@ -26,6 +31,7 @@
 
 #include "exporters/formats/surface_spline.h"
 #include "exporters/surface/surface_input.h"
+#include "importer/base/ids.h"
 #include "importer/base/option.h"
 #include "importer/base/statistics.h"
 
@@ -52,8 +58,7 @@ struct SurfaceResidual {
   int marker_id = 0;
   std::string line;         // empty for a marker on no line of the fit
   double u = 0.0, v = 0.0;  // of the marker's foot on the surface
-  // Distance from the surface to the marker, along the normal. The place of a marker is where the
-  // cloth is between its corners: the mean of the corners, moved out by the bend of the surface.
+  // Mean distance from the surface to the corners of the marker, along the normal.
   double distance_m = 0.0;
   double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
   bool is_used = false;        // false for markers outside the edge, which the fit ignores
@@ -76,10 +81,11 @@ struct FittedSurface {
   double num_effective_parameters = 0.0;
   // Per coordinate of the poles (surface_smoother.h); empty if the markers are interpolated.
   Eigen::MatrixXd pole_covariance_m2;
-  // The same in two parts, for noise that the markers share: the markers of the fit with what each
-  // adds to the poles (poles x markers, rows sum to 1), and what comes from the smoothing alone.
-  std::vector<int> marker_ids;
-  Eigen::MatrixXd pole_by_marker, smoothing_covariance_m2;
+  // The same in two parts, for noise that the markers share: the corners of the markers of the fit
+  // (0 for a marker without corners) with what each adds to the poles (poles x points, rows sum to
+  // 1), and what comes from the smoothing alone.
+  std::vector<CornerId> points;
+  Eigen::MatrixXd pole_by_point, smoothing_covariance_m2;
   std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
   std::vector<std::string> notes;       // lines left out and why, gaps, markers outside the edge
 };
@@ -90,7 +96,7 @@ std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v);
 
 // How the surface at a place depends on the markers of the fit.
 struct SurfaceDependence {
-  Eigen::VectorXd marker_weights;  // by FittedSurface::marker_ids; they sum to 1
+  Eigen::VectorXd point_weights;  // by FittedSurface::points; they sum to 1
   // The two parts of the square of SigmaAt(): from the noise of the markers as the residuals show
   // it, independent from marker to marker, and from what the smoothing may have flattened.
   double noise_variance_m2 = 0.0, smoothing_variance_m2 = 0.0;

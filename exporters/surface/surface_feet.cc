@@ -9,18 +9,28 @@ namespace velamap {
 namespace {
 
 // Each fit moves the feet only a little, so a few Gauss-Newton steps are enough.
-void MoveToFoot(const SplineSurface& surface, SurfaceObservation* observation) {
+void MoveToFoot(const SplineSurface& surface, PlacedPoint* point) {
   constexpr int kNumSteps = 3;
   for (int step = 0; step < kNumSteps; ++step) {
-    const SurfaceJet jet = EvaluateJet(surface, observation->u, observation->v);
+    const SurfaceJet jet = EvaluateJet(surface, point->u, point->v);
     Eigen::Matrix<double, 3, 2> tangents;
     tangents << jet.x_u, jet.x_v;
     const Eigen::Matrix2d normal = tangents.transpose() * tangents;
     const Eigen::Vector2d move =
-        normal.ldlt().solve(tangents.transpose() * (observation->OnCloth() - jet.x));
-    observation->u += move[0];
-    observation->v += move[1];
+        normal.ldlt().solve(tangents.transpose() * (point->x_in_shape_m - jet.x));
+    point->u += move[0];
+    point->v += move[1];
   }
+}
+
+// Moves all points alike, so that their mean comes to u and v.
+void MoveAlike(double u, double v, SurfaceObservation* observation) {
+  for (PlacedPoint& point : observation->points) {
+    point.u += u - observation->u;
+    point.v += v - observation->v;
+  }
+  observation->u = u;
+  observation->v = v;
 }
 
 // The least and greatest u and v of the markers.
@@ -52,41 +62,46 @@ OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& e
   return open;
 }
 
-void MoveToFeet(const SplineSurface& surface, const OpenSides& open,
-                SurfaceParameters* parameters) {
+void MoveToFeet(const SplineSurface& surface, SurfaceObservation* observation) {
+  double sum_u = 0.0, sum_v = 0.0;
+  for (PlacedPoint& point : observation->points) {
+    MoveToFoot(surface, &point);
+    sum_u += point.u;
+    sum_v += point.v;
+  }
+  observation->u = sum_u / static_cast<double>(observation->points.size());
+  observation->v = sum_v / static_cast<double>(observation->points.size());
+}
+
+void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
+                       SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
-    if (observation.marker_id >= 0) MoveToFoot(surface, &observation);
+    if (observation.marker_id >= 0) MoveToFeet(surface, &observation);
   }
   const Bounds bounds = BoundsOf(*parameters);
   const Eigen::Array2d first = open.at_least.select(Eigen::Array2d::Zero(), bounds.least);
   const Eigen::Array2d last = open.at_greatest.select(Eigen::Array2d::Ones(), bounds.greatest);
+  const auto rescale = [&](auto* place) {
+    place->u = (place->u - first[0]) / (last[0] - first[0]);
+    place->v = (place->v - first[1]) / (last[1] - first[1]);
+  };
   for (SurfaceObservation& observation : parameters->observations) {
-    observation.u = (observation.u - first[0]) / (last[0] - first[0]);
-    observation.v = (observation.v - first[1]) / (last[1] - first[1]);
-  }
-}
-
-void SetSags(const SplineSurface& surface, SurfaceParameters* parameters) {
-  for (SurfaceObservation& observation : parameters->observations) {
-    if (observation.side_m <= 0) continue;
-    const SurfaceJet jet = EvaluateJet(surface, observation.u, observation.v);
-    const double uu = jet.x_u.squaredNorm(), uv = jet.x_u.dot(jet.x_v), vv = jet.x_v.squaredNorm();
-    const double area = uu * vv - uv * uv;
-    if (area <= 0) continue;
-    const double mean_curvature =
-        (uu * jet.normal.dot(jet.x_vv) - 2 * uv * jet.normal.dot(jet.x_uv) +
-         vv * jet.normal.dot(jet.x_uu)) /
-        (2 * area);
-    observation.sag_m = -mean_curvature * observation.side_m * observation.side_m / 4 * jet.normal;
+    rescale(&observation);
+    for (PlacedPoint& point : observation.points) rescale(&point);
   }
 }
 
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
-    if (observation.marker_id < 0 || !observation.line.empty()) continue;
-    MoveToFoot(surface, &observation);
-    observation.u = std::clamp(observation.u, 0.0, 1.0);
-    observation.v = std::clamp(observation.v, 0.0, 1.0);
+    if (observation.marker_id < 0) continue;
+    const double u = observation.u, v = observation.v;
+    MoveToFeet(surface, &observation);
+    if (observation.line.empty()) {
+      MoveAlike(std::clamp(observation.u, 0.0, 1.0), std::clamp(observation.v, 0.0, 1.0),
+                &observation);
+    } else {
+      MoveAlike(u, v, &observation);
+    }
   }
 }
 

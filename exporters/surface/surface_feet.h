@@ -13,18 +13,17 @@ struct OpenSides {
 };
 OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& edges);
 
-// Moves the markers to their feet on the surface, also beyond its edge. Then rescales u and v of
-// all observations so that the markers span 0 to 1 again, except at open sides, where 0 or 1 is an
-// edge beyond the markers and stays. The chord length of a marker depends on where its line begins;
-// its foot does not.
-void MoveToFeet(const SplineSurface& surface, const OpenSides& open, SurfaceParameters* parameters);
+// Moves the points of an observation to their feet on the surface, also beyond its edge.
+void MoveToFeet(const SplineSurface& surface, SurfaceObservation* observation);
 
-// Sets the sag of each marker with a known side: side^2 / 4 times the mean curvature of the surface
-// there, which is how far the cloth at the middle of a marker lies from the mean of its corners.
-void SetSags(const SplineSurface& surface, SurfaceParameters* parameters);
+// Moves the markers to their feet. Then rescales u and v of all observations so that the markers
+// span 0 to 1 again, except at open sides, where 0 or 1 is an edge beyond the markers and stays.
+// The chord length of a marker depends on where its line begins; its foot does not.
+void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
+                       SurfaceParameters* parameters);
 
 // Moves only the markers on no line of the fit, and none beyond the edge: for surfaces that
-// interpolate, whose lines keep their chord lengths.
+// interpolate, whose lines keep their chord lengths. The corners of a marker move around its place.
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
 }  // namespace velamap

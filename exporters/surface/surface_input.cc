@@ -1,5 +1,7 @@
 #include "exporters/surface/surface_input.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -8,14 +10,31 @@
 namespace velamap {
 namespace {
 
+// Each corner has the errors of the centre and some of its own, which are independent and sum to
+// zero (comparison_sigma.h); a fourth of their variance is that of the tilt.
+std::optional<double> TiltSigma(const ShapeMarker& marker, double center_sigma_m) {
+  constexpr double kMinOfCenter = 0.05;  // rounded sigmas, or the same for corners and centre
+  double sum_m2 = 0.0;
+  for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+    if (!marker.sigma_m[corner]) return std::nullopt;
+    sum_m2 += std::pow(SigmaOfCoordinate(*marker.sigma_m[corner]), 2);
+  }
+  const double own_m2 = (sum_m2 / kNumCorners - center_sigma_m * center_sigma_m) * 4 / 3;
+  return std::max(std::sqrt(std::max(own_m2, 0.0)) / 2, kMinOfCenter * center_sigma_m);
+}
+
 std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,
                                   int marker_id) {
   const auto found = whole_markers.find(marker_id);
   if (found == whole_markers.end()) return std::nullopt;
   const ShapeMarker& marker = *found->second;
-  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt,
-                       MeanSide(MarkerSides(marker))};
-  if (marker.sigma_m[0]) result.sigma_m = SigmaOfCoordinate(*marker.sigma_m[0]);
+  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt};
+  for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+    result.corners_in_shape_m.push_back(*marker.x_in_shape_m[corner]);
+  }
+  if (!marker.sigma_m[0]) return result;
+  result.sigma_m = SigmaOfCoordinate(*marker.sigma_m[0]);
+  result.tilt_sigma_m = TiltSigma(marker, *result.sigma_m);
   return result;
 }
 

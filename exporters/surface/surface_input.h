@@ -1,4 +1,4 @@
-// The marker centres that a surface is fitted to, by their lines.
+// The markers that a surface is fitted to, by their lines.
 
 #pragma once
 
@@ -15,9 +15,12 @@ namespace velamap {
 
 struct SurfaceMarker {
   int marker_id = 0;
-  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the centre
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the centre, the mean of the corners
   std::optional<double> sigma_m;                           // of each coordinate
-  double side_m = 0.0;  // 0 for a point; the centre of a marker is the mean of its corners
+  std::vector<Eigen::Vector3d> corners_in_shape_m{};       // 1 to 4; none for a point
+  // Of each coordinate of half the vector from the middle of a side to that of the opposite one,
+  // which shows how the marker is tilted. Errors that all corners share do not count.
+  std::optional<double> tilt_sigma_m{};
 };
 
 // A horizontal line of the layout from luff to leech. A marker that the shape lacks keeps its place
@@ -50,7 +53,8 @@ struct SurfaceInput {
 // Collects the horizontal lines of `part` in the order of the layout, its other markers, and where
 // the layout says that its edges are; whole markers only. The sigma of a marker is the root mean
 // square of the three sigmas of its centre, with the errors that it shares with others: neighbours
-// share some that bend the surface, which the noise of single markers does not show.
+// share some that bend the surface, which the noise of single markers does not show. The sigma of
+// its tilt follows from what the sigmas of the corners exceed it by.
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
 
 }  // namespace velamap

@@ -81,9 +81,12 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const double v = heights_m[j] / parameters.length_v_m;
     for (std::size_t k = 0; k < rows[j].points.size(); ++k) {
+      const bool is_marker = rows[j].marker_ids[k] >= 0;
       parameters.observations.push_back({rows[j].marker_ids[k],
-                                         rows[j].marker_ids[k] < 0 ? "" : rows[j].name,
-                                         rows[j].points[k], rows[j].us[k], v});
+                                         is_marker ? rows[j].name : "",
+                                         rows[j].us[k],
+                                         v,
+                                         {{rows[j].points[k], rows[j].us[k], v}}});
       all_us.push_back(rows[j].us[k]);
     }
     line_vs.push_back(v);

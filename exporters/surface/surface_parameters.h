@@ -9,16 +9,17 @@
 
 namespace velamap {
 
+// A point and its place on the surface.
+struct PlacedPoint {
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
+  double u = 0.0, v = 0.0;
+};
+
 struct SurfaceObservation {
   int marker_id = -1;  // -1: a point of a given edge
   std::string line;
-  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
-  double u = 0.0, v = 0.0;
-  double side_m = 0.0;  // of the marker
-  // From the mean of the corners to the cloth, which is bent between them.
-  Eigen::Vector3d sag_m = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d OnCloth() const { return x_in_shape_m + sag_m; }
+  double u = 0.0, v = 0.0;          // mean of those of the points
+  std::vector<PlacedPoint> points;  // the corners 1 to 4 of a marker, or one point
 };
 
 struct SurfaceParameters {

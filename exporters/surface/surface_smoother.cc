@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include "importer/base/error.h"
 
@@ -86,26 +87,41 @@ Eigen::RowVectorXd BasisAt(const Eigen::ArrayXd& knots_u, int degree_u,
   return basis;
 }
 
-// One row per observation, times the square root of the weight.
-Eigen::MatrixXd DesignMatrix(const SurfaceParameters& parameters,
-                             const std::vector<double>& weights) {
-  const auto& observations = parameters.observations;
-  Eigen::MatrixXd design;
-  for (std::size_t k = 0; k < observations.size(); ++k) {
-    const Eigen::RowVectorXd basis =
-        BasisAt(parameters.knots_u, parameters.degree_u, parameters.knots_v, parameters.degree_v,
-                observations[k].u, observations[k].v);
-    if (design.size() == 0) design.setZero(observations.size(), basis.size());
-    design.row(k) = std::sqrt(weights[k]) * basis;
-  }
-  return design;
-}
-
 struct System {
   Eigen::MatrixXd design, normal;
+  Eigen::MatrixXd root;  // root * root^T is the normal matrix
   Penalties penalties;
   Eigen::MatrixX3d data;
 };
+
+// One row of the design and the data per term, times the square root of its weight.
+System MakeSystem(const SurfaceParameters& parameters, const std::vector<SurfaceTerm>& terms) {
+  const Eigen::Index num_poles = (parameters.knots_u.size() - parameters.degree_u - 1) *
+                                 (parameters.knots_v.size() - parameters.degree_v - 1);
+  System system;
+  system.design.setZero(terms.size(), num_poles);
+  system.data.setZero(terms.size(), 3);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& points = parameters.observations[terms[k].observation_idx].points;
+    VELAMAP_CHECK(terms[k].factors.size() == points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double factor = std::sqrt(terms[k].weight) * terms[k].factors[i];
+      system.design.row(k) +=
+          factor * BasisAt(parameters.knots_u, parameters.degree_u, parameters.knots_v,
+                           parameters.degree_v, points[i].u, points[i].v);
+      system.data.row(k) += factor * points[i].x_in_shape_m;
+    }
+  }
+  system.normal = system.design.transpose() * system.design;
+  system.root = system.design.transpose();
+  if (system.root.cols() > num_poles) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(system.design);
+    system.root = qr.matrixQR().topRows(num_poles).triangularView<Eigen::Upper>();
+    system.root.transposeInPlace();
+  }
+  system.penalties = PenaltyMatrices(parameters);
+  return system;
+}
 
 struct Solution {
   Eigen::MatrixX3d poles;
@@ -150,7 +166,7 @@ Solution Solve(const System& system, const Weights& weights) {
         factor.solve(system.design.transpose() * (system.data - system.design * solution.poles) -
                      penalty * solution.poles);
   }
-  solution.trace = factor.matrixL().solve(system.design.transpose()).squaredNorm();
+  solution.trace = factor.matrixL().solve(system.root).squaredNorm();
   return solution;
 }
 
@@ -160,23 +176,24 @@ SplineSurface MakeSurface(const SurfaceParameters& parameters, const Solution& s
 }
 
 // Counts the error along the normal only: along the surface, a marker may lie anywhere.
-double NormalSquaredResiduals(const System& system, const Solution& solution,
-                              const Eigen::MatrixX3d& normals) {
+Eigen::VectorXd NormalResiduals(const System& system, const Solution& solution,
+                                const Eigen::MatrixX3d& normals) {
   const Eigen::MatrixX3d residuals = system.data - system.design * solution.poles;
-  return residuals.cwiseProduct(normals).rowwise().sum().squaredNorm();
+  return residuals.cwiseProduct(normals).rowwise().sum();
 }
 
-// Sets the covariance of the poles and its parts. `variance` is that of an observation of weight 1.
-void AddUncertainty(const System& system, const std::vector<double>& observation_weights,
+// Sets the covariance of the poles and its parts. `variance` is that of a term of weight 1.
+void AddUncertainty(const System& system, const std::vector<SurfaceTerm>& terms,
                     const Weights& weights, double variance, SmoothSurface* smooth) {
   const auto [penalty, factor] = MakeEquations(system, weights);
   const Eigen::MatrixXd inverse =
       factor.solve(Eigen::MatrixXd::Identity(penalty.rows(), penalty.rows()));
   smooth->pole_covariance_m2 = variance * inverse;
   smooth->smoothing_covariance_m2 = variance * inverse * penalty * inverse;
-  smooth->pole_by_observation = factor.solve(system.design.transpose());
-  for (std::size_t k = 0; k < observation_weights.size(); ++k) {
-    smooth->pole_by_observation.col(k) *= std::sqrt(observation_weights[k]);
+  smooth->pole_by_term = factor.solve(system.design.transpose());
+  smooth->leverages = system.design.cwiseProduct(smooth->pole_by_term.transpose()).rowwise().sum();
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    smooth->pole_by_term.col(k) *= std::sqrt(terms[k].weight);
   }
 }
 
@@ -219,32 +236,28 @@ Choice Search(const System& system, const Score& score_of) {
 
 }  // namespace
 
-SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
-                                 const std::vector<double>& weights, Smoothing smoothing) {
-  const std::size_t n = parameters.observations.size();
-  VELAMAP_CHECK(weights.size() == n);
-  System system;
-  system.design = DesignMatrix(parameters, weights);
-  system.normal = system.design.transpose() * system.design;
-  system.penalties = PenaltyMatrices(parameters);
-  system.data.resize(n, 3);
-  for (std::size_t k = 0; k < n; ++k) {
-    system.data.row(k) = std::sqrt(weights[k]) * parameters.observations[k].OnCloth();
-  }
+SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
+                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing) {
+  const std::size_t n = terms.size();
+  const System system = MakeSystem(parameters, terms);
+  SmoothSurface smooth;
   if (smoothing == Smoothing::kInterpolate) {
     const Solution closest = Solve(system, {kMinWeightAlongLines, kMinWeight});
-    return {MakeSurface(parameters, closest), closest.trace, {}, {}, {}};
+    smooth.surface = MakeSurface(parameters, closest);
+    smooth.num_effective_parameters = closest.trace;
+    return smooth;
   }
   const Solution parabolic = Solve(system, {kMaxWeight, kMaxWeight});
-  const SplineSurface base = MakeSurface(parameters, parabolic);
-  if (smoothing == Smoothing::kParabolas) return {base, parabolic.trace, {}, {}, {}};
+  smooth.surface = MakeSurface(parameters, parabolic);
+  smooth.num_effective_parameters = parabolic.trace;
+  if (smoothing == Smoothing::kParabolas) return smooth;
   Eigen::MatrixX3d normals(n, 3);
   for (std::size_t k = 0; k < n; ++k) {
-    const SurfaceObservation& observation = parameters.observations[k];
-    normals.row(k) = EvaluateJet(base, observation.u, observation.v).normal;
+    const SurfaceObservation& observation = parameters.observations[terms[k].observation_idx];
+    normals.row(k) = EvaluateJet(smooth.surface, observation.u, observation.v).normal;
   }
   const auto squares_of = [&](const Solution& solution) {
-    return NormalSquaredResiduals(system, solution, normals);
+    return NormalResiduals(system, solution, normals).squaredNorm();
   };
   const Choice chosen = Search(system, [&](const Solution& solution) {
     if (smoothing == Smoothing::kKnownSigma) {
@@ -255,12 +268,13 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
                     : std::numeric_limits<double>::infinity();
   });
   const double free = n - chosen.solution.trace;
-  const double variance =
-      smoothing == Smoothing::kKnownSigma ? 1.0 : squares_of(chosen.solution) / std::max(free, 1.0);
-  SmoothSurface smooth;
+  smooth.residuals = NormalResiduals(system, chosen.solution, normals);
+  const double variance = smoothing == Smoothing::kKnownSigma
+                              ? 1.0
+                              : smooth.residuals.squaredNorm() / std::max(free, 1.0);
   smooth.surface = MakeSurface(parameters, chosen.solution);
   smooth.num_effective_parameters = chosen.solution.trace;
-  AddUncertainty(system, weights, chosen.weights, variance, &smooth);
+  AddUncertainty(system, terms, chosen.weights, variance, &smooth);
   return smooth;
 }
 

@@ -24,16 +24,26 @@ enum class Smoothing {
 // surface rough.
 constexpr std::size_t kMinCrossValidated = 30;
 
+// A weighted sum of the points of an observation that the surface should have as well.
+struct SurfaceTerm {
+  std::size_t observation_idx = 0;
+  std::vector<double> factors;  // by the observation's points
+  double weight = 1.0;          // positive; 1 / sigma^2
+};
+
 struct SmoothSurface {
   SplineSurface surface;
   double num_effective_parameters = 0.0;
+  // By term: the residual along the normal times the root of the weight, and how far the surface
+  // follows the term (the diagonal of the hat matrix). Empty for parabolas and if interpolating.
+  Eigen::VectorXd residuals, leverages;
   // Per coordinate of the poles, m^2, with the penalty as prior knowledge (Wahba, "Bayesian
   // confidence intervals for the cross-validated smoothing spline", 1983). Empty if interpolating.
   Eigen::MatrixXd pole_covariance_m2;
-  // The two parts of it, for noise that the observations share: how far the poles follow each
-  // observation (poles x observations, rows sum to 1), and what does not come from their noise but
-  // from what the smoothing may have flattened. Empty if interpolating.
-  Eigen::MatrixXd pole_by_observation, smoothing_covariance_m2;
+  // The two parts of it, for noise that the terms share: how far the poles follow each term (poles
+  // x terms), and what does not come from their noise but from what the smoothing may have
+  // flattened. Empty if interpolating.
+  Eigen::MatrixXd pole_by_term, smoothing_covariance_m2;
 };
 
 // The share of each pole in a point of the surface; they sum to 1.
@@ -43,9 +53,8 @@ Eigen::RowVectorXd PoleShares(const SplineSurface& surface, double u, double v);
 std::optional<double> SigmaAt(const SplineSurface& surface,
                               const Eigen::MatrixXd& pole_covariance_m2, double u, double v);
 
-// Takes one positive weight per observation. Throws DataError if the equations have no solution in
-// double precision.
-SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
-                                 const std::vector<double>& weights, Smoothing smoothing);
+// Throws DataError if the equations have no solution in double precision.
+SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
+                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing);
 
 }  // namespace velamap

@@ -113,14 +113,16 @@ SailLines LinesOf(const MarkerShape& truth, const LayoutPart& part, const Surfac
 }
 
 SurfaceInput InFrameOf(const Rigid3& sail_from_shape, SurfaceInput input) {
+  const auto move = [&](SurfaceMarker* marker) {
+    marker->x_in_shape_m = sail_from_shape * marker->x_in_shape_m;
+    for (Eigen::Vector3d& corner : marker->corners_in_shape_m) corner = sail_from_shape * corner;
+  };
   for (SurfaceLine& line : input.lines) {
     for (auto& marker : line.markers) {
-      if (marker) marker->x_in_shape_m = sail_from_shape * marker->x_in_shape_m;
+      if (marker) move(&*marker);
     }
   }
-  for (SurfaceMarker& marker : input.markers) {
-    marker.x_in_shape_m = sail_from_shape * marker.x_in_shape_m;
-  }
+  for (SurfaceMarker& marker : input.markers) move(&marker);
   return input;
 }
 

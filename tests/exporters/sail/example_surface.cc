@@ -44,21 +44,37 @@ SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers
   return input;
 }
 
-SurfaceInput AsExact(SurfaceInput input) {
-  for (SurfaceLine& line : input.lines) {
-    for (auto& marker : line.markers) {
-      if (marker) marker->sigma_m = 0.0;
-    }
-  }
-  for (SurfaceMarker& marker : input.markers) marker.sigma_m = 0.0;
+SurfaceInput CornersOn(const SurfaceTruth& truth, int num_lines, int num_markers, double du,
+                       double dv) {
+  SurfaceInput input = MarkersOn(truth, num_lines, num_markers);
+  ForEachMarker(&input, [&](SurfaceMarker* marker) {
+    const double u = static_cast<double>(marker->marker_id % num_markers) / (num_markers - 1);
+    const double v = static_cast<double>(marker->marker_id / num_markers) / (num_lines - 1);
+    marker->corners_in_shape_m = {truth(u - du, v + dv), truth(u + du, v + dv),
+                                  truth(u + du, v - dv), truth(u - du, v - dv)};
+    marker->x_in_shape_m.setZero();
+    for (const Eigen::Vector3d& x : marker->corners_in_shape_m) marker->x_in_shape_m += x / 4;
+  });
   return input;
+}
+
+SurfaceInput AsExact(SurfaceInput input) {
+  ForEachMarker(&input, [](SurfaceMarker* marker) { marker->sigma_m = 0.0; });
+  return input;
+}
+
+void MoveMarker(const Eigen::Vector3d& move_m, SurfaceMarker* marker) {
+  marker->x_in_shape_m += move_m;
+  for (Eigen::Vector3d& corner : marker->corners_in_shape_m) corner += move_m;
 }
 
 void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, sigma_m);
   ForEachMarker(input, [&](SurfaceMarker* marker) {
-    for (double& x : marker->x_in_shape_m) x += normal(random);
+    Eigen::Vector3d noise_m;
+    for (double& x : noise_m) x = normal(random);
+    MoveMarker(noise_m, marker);
     if (with_sigma) marker->sigma_m = sigma_m;
   });
 }

@@ -26,16 +26,25 @@ Eigen::Vector3d TwistedSail(double u, double v);
 // sigmas.
 SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers);
 
+// The same with four corners on the surface, `du` and `dv` from the middle of each marker.
+SurfaceInput CornersOn(const SurfaceTruth& truth, int num_lines, int num_markers, double du,
+                       double dv);
+
 // With a sigma of 0 for all markers, so that the surface goes through them.
 SurfaceInput AsExact(SurfaceInput input);
 
 template <typename Function>
 void ForEachMarker(SurfaceInput* input, const Function& function) {
   for (SurfaceLine& line : input->lines) {
-    for (auto& marker : line.markers) function(&*marker);
+    for (auto& marker : line.markers) {
+      if (marker) function(&*marker);
+    }
   }
   for (SurfaceMarker& marker : input->markers) function(&marker);
 }
+
+// With its corners.
+void MoveMarker(const Eigen::Vector3d& move_m, SurfaceMarker* marker);
 
 // Moves all markers by normal noise, which becomes their sigma if `with_sigma`.
 void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kPlaces[] = {0.02, 0.3, 0.5, 0.8, 0.97};
 
 SurfaceInput NoisySail() {
-  SurfaceInput input = MarkersOn(TwistedSail, 7, 9);
+  SurfaceInput input = CornersOn(TwistedSail, 7, 9, 0.02, 0.01);
   AddNoise(0.002, true, 1, &input);
   return input;
 }
@@ -24,11 +24,11 @@ TEST(SurfaceDependence, SharesOfTheMarkersSumToOneAndTheVariancesToThatOfTheSurf
   for (int i = 0; i <= 10; ++i) with_edge.edges.luff.push_back(TwistedSail(-0.01, 0.1 * i));
   for (const SurfaceOptions& options : {SurfaceOptions(), with_edge}) {
     const FittedSurface fit = FitSurface(NoisySail(), options);
-    EXPECT_EQ(fit.marker_ids.size(), 63u);
+    EXPECT_EQ(fit.points.size(), 4 * 63u);
     for (const double u : kPlaces) {
       for (const double v : kPlaces) {
         const SurfaceDependence dependence = DependenceAt(fit, u, v).value();
-        EXPECT_NEAR(dependence.marker_weights.sum(), 1.0, 1e-6) << u << " " << v;
+        EXPECT_NEAR(dependence.point_weights.sum(), 1.0, 1e-6) << u << " " << v;
         EXPECT_GT(dependence.noise_variance_m2, 0.0);
         EXPECT_GT(dependence.smoothing_variance_m2, 0.0);
         EXPECT_NEAR(std::sqrt(dependence.noise_variance_m2 + dependence.smoothing_variance_m2),
@@ -41,18 +41,25 @@ TEST(SurfaceDependence, SharesOfTheMarkersSumToOneAndTheVariancesToThatOfTheSurf
 TEST(SurfaceDependence, AMarkerThatMovesTakesItsShareOfTheSurfaceAlong) {
   SurfaceInput input = NoisySail();
   const FittedSurface before = FitSurface(input);
-  const std::size_t moved_idx = 31;  // in the middle
-  const int moved_id = before.marker_ids.at(moved_idx);
+  constexpr int kMovedId = 31;  // in the middle
+  const auto share_of_moved = [&](double u, double v) {
+    const Eigen::VectorXd weights = DependenceAt(before, u, v)->point_weights;
+    double share = 0.0;
+    for (std::size_t k = 0; k < before.points.size(); ++k) {
+      if (before.points[k].marker_id == kMovedId) share += weights[static_cast<Eigen::Index>(k)];
+    }
+    return share;
+  };
   const Eigen::Vector3d normal = EvaluateNormal(before.surface, 0.5, 0.5);
   constexpr double kMove_m = 1e-6;  // too little to change how much is smoothed
   ForEachMarker(&input, [&](SurfaceMarker* marker) {
-    if (marker->marker_id == moved_id) marker->x_in_shape_m += kMove_m * normal;
+    if (marker->marker_id == kMovedId) MoveMarker(kMove_m * normal, marker);
   });
   const FittedSurface after = FitSurface(input);
   double largest_share = 0.0;
   for (const double u : kPlaces) {
     for (const double v : kPlaces) {
-      const double share = DependenceAt(before, u, v)->marker_weights[moved_idx];
+      const double share = share_of_moved(u, v);
       const Eigen::Vector3d move_m =
           EvaluatePoint(after.surface, u, v) - EvaluatePoint(before.surface, u, v);
       const Eigen::Vector3d there = EvaluateNormal(before.surface, u, v);

@@ -30,7 +30,8 @@ SailLines DrawLines(const Surface& sail, std::mt19937* random);
 double MarkerSigma(double sigma_m, double fraction);
 
 // Markers every 150 mm along the lines, and four between each pair of lines on a vertical line near
-// the middle of the chords. Each has noise of MarkerSigma() and states this sigma.
+// the middle of the chords. Each has four corners on the sail, noise of MarkerSigma(), half as much
+// in its tilts, and states these sigmas.
 SurfaceInput DrawMarkers(const Surface& sail, const SailLines& lines, double sigma_m,
                          std::mt19937* random);
 
