@@ -18,8 +18,9 @@ namespace velamap {
 namespace {
 
 constexpr std::size_t kMinSurfaceMarkers = 3, kMinLines = 2;
-// The first fits are parabolas, whose feet are not moved by noise.
-constexpr int kNumParabolicFits = 3, kNumFits = 6;
+// The first fits are parabolas, whose feet are not moved by noise. The next one leaves out the
+// tilts, so that tilts which contradict the places, as those of stiff plates do, get little weight.
+constexpr int kNumParabolicFits = 3, kNumFits = 7;
 // A foot within this parameter distance of an edge counts as a foot on the edge.
 constexpr double kInside = 1e-9;
 
@@ -248,18 +249,18 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   SetCorners(sorted.by_id, &parameters);
   SmoothSurface smooth;
   std::vector<SurfaceTerm> terms;
-  double tilt_noise = 1.0;
+  std::optional<double> tilt_noise;
   for (int fit = 1; fit <= kNumFits; ++fit) {
     const bool is_parabolic = fit <= kNumParabolicFits && !interpolates;
     terms = PlaceTerms(parameters.observations, noise);
-    if (!is_parabolic && !interpolates) {
-      AddTiltTerms(parameters.observations, noise, tilt_noise, &terms);
-    }
+    if (tilt_noise) AddTiltTerms(parameters.observations, noise, *tilt_noise, &terms);
     smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing);
     if (fit == kNumFits) break;
-    tilt_noise *= NoiseOfTilts(smooth, parameters.observations.size());
-    // Few markers do not show that their tilts are better than their sigmas say.
-    if (noise.smoothing == Smoothing::kKnownSigma) tilt_noise = std::max(tilt_noise, 1.0);
+    if (!is_parabolic && !interpolates) {
+      tilt_noise = NoiseOfTilts(parameters.observations, noise, smooth);
+      // Few markers do not show that their tilts are better than their sigmas say.
+      if (noise.smoothing == Smoothing::kKnownSigma) tilt_noise = std::max(*tilt_noise, 1.0);
+    }
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
     if (interpolates) {
       MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);

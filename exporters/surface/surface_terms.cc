@@ -1,6 +1,5 @@
 #include "exporters/surface/surface_terms.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -58,17 +57,29 @@ void AddTiltTerms(const std::vector<SurfaceObservation>& observations, const Mar
   }
 }
 
-double NoiseOfTilts(const SmoothSurface& smooth, std::size_t num_places) {
-  constexpr double kLargest = 30.0;
-  const auto n = static_cast<Eigen::Index>(num_places), num_tilts = smooth.residuals.size() - n;
-  if (num_tilts <= 0) return 1.0;
-  const auto variance = [](const auto& residuals, const auto& leverages) {
-    return residuals.squaredNorm() / (static_cast<double>(residuals.size()) - leverages.sum());
-  };
-  const double ratio =
-      std::sqrt(variance(smooth.residuals.tail(num_tilts), smooth.leverages.tail(num_tilts)) /
-                variance(smooth.residuals.head(n), smooth.leverages.head(n)));
-  return std::isfinite(ratio) ? std::clamp(ratio, 1 / kLargest, kLargest) : 1.0;
+double NoiseOfTilts(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
+                    const SmoothSurface& smooth) {
+  std::vector<SurfaceTerm> tilts;
+  AddTiltTerms(observations, noise, 1.0, &tilts);
+  double squares_of_tilts = 0.0;
+  for (const SurfaceTerm& term : tilts) {
+    const SurfaceObservation& marker = observations[term.observation_idx];
+    Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < marker.points.size(); ++i) {
+      const PlacedPoint& point = marker.points[i];
+      residual_m +=
+          term.factors[i] * (point.x_in_shape_m - EvaluatePoint(smooth.surface, point.u, point.v));
+    }
+    const Eigen::Vector3d normal = EvaluateNormal(smooth.surface, marker.u, marker.v);
+    squares_of_tilts += term.weight * std::pow(normal.dot(residual_m), 2);
+  }
+  const auto n = static_cast<Eigen::Index>(observations.size());
+  const double free_tilts =
+      static_cast<double>(tilts.size()) - smooth.leverages.tail(smooth.leverages.size() - n).sum();
+  const double free_places = static_cast<double>(n) - smooth.leverages.head(n).sum();
+  const double ratio = std::sqrt(squares_of_tilts / free_tilts /
+                                 (smooth.residuals.head(n).squaredNorm() / free_places));
+  return std::isfinite(ratio) && ratio > 0 ? ratio : 1.0;
 }
 
 }  // namespace velamap

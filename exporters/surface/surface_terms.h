@@ -31,9 +31,10 @@ void AddTiltTerms(const std::vector<SurfaceObservation>& observations, const Mar
                   double noise_factor, std::vector<SurfaceTerm>* terms);
 
 // How much larger than their sigmas the residuals of the tilts are, compared with those of the
-// places, which are the first `num_places` terms: the root of the ratio of two variance components
-// (Förstner, "Ein Verfahren zur Schätzung von Varianz- und Kovarianzkomponenten", 1979). 1 where
-// the residuals do not tell.
-double NoiseOfTilts(const SmoothSurface& smooth, std::size_t num_places);
+// places: the root of the ratio of two variance components (Förstner, "Ein Verfahren zur Schätzung
+// von Varianz- und Kovarianzkomponenten", 1979). `smooth` fits the places and, if it has more
+// terms, the tilts. 1 where the residuals do not tell.
+double NoiseOfTilts(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
+                    const SmoothSurface& smooth);
 
 }  // namespace velamap

@@ -72,9 +72,15 @@ void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, sigma_m);
   ForEachMarker(input, [&](SurfaceMarker* marker) {
-    Eigen::Vector3d noise_m;
-    for (double& x : noise_m) x = normal(random);
-    MoveMarker(noise_m, marker);
+    for (Eigen::Vector3d& corner : marker->corners_in_shape_m) {
+      const Eigen::Vector3d noise_m =
+          2 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+      corner += noise_m;
+      marker->x_in_shape_m += noise_m / 4;
+    }
+    if (marker->corners_in_shape_m.empty()) {
+      for (double& x : marker->x_in_shape_m) x += normal(random);
+    }
     if (with_sigma) marker->sigma_m = sigma_m;
   });
 }

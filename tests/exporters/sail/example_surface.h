@@ -46,7 +46,8 @@ void ForEachMarker(SurfaceInput* input, const Function& function) {
 // With its corners.
 void MoveMarker(const Eigen::Vector3d& move_m, SurfaceMarker* marker);
 
-// Moves all markers by normal noise, which becomes their sigma if `with_sigma`.
+// Moves all markers by normal noise, which becomes their sigma if `with_sigma`. Corners get twice
+// as much each, so that their mean has this sigma.
 void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input);
 
 // The largest distance of a marker in use from the surface, m.
