@@ -33,8 +33,12 @@ TEST(ComparisonSurface, AnUncertainShapeIsNowhereFromItselfElsewhere) {
   MarkerShape shape = BoatShape(0.001);
   double wave = 0.0;
   for (ShapeMarker& marker : shape.markers) {
-    const double error_m = 0.005 * std::sin(wave += 1.7);
-    for (auto& x : marker.x_in_shape_m) *x += Eigen::Vector3d(0, error_m, 0);
+    double error_m = 0.0;
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      error_m = 0.01 * std::sin(wave += 1.7);
+      *marker.x_in_shape_m[corner] += Eigen::Vector3d(0, error_m, 0);
+    }
+    marker.x_in_shape_m[0] = MeanOfCorners(marker);
     for (auto& sigma_m : marker.sigma_m) *sigma_m = {0.001, 0.002 + 0.3 * std::abs(error_m), 0.004};
   }
   const ShapeDeviation deviation =
