@@ -118,7 +118,7 @@ void Validate(AutomaticReconstructorCommandOptions* options) {
 }
 
 ImportReport Import(MarkerImporterOptions options, Workspace* workspace,
-                    std::vector<LeftOutImage>* unreadable) {
+                    std::vector<ReportLeftOut>* unreadable) {
   options.database_path = workspace->paths().Database().string();
   options.frame_output_path = workspace->paths().Images().string();
   options.is_only_source = true;
@@ -161,12 +161,8 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.rigs = MakeReportRigs(shape.sail.sections);
   input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
   input.clip = seed.clip;
-  for (const LeftOutImage& image : summary.left_out) {
-    input.images_left_out.push_back({image.image_name, image.reason});
-  }
-  for (const DroppedMarker& marker : seed.registration.dropped_markers) {
-    input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
-  }
+  input.images_left_out = summary.left_out;
+  input.markers_left_out = NamedById(summary.dropped_markers);
   input.num_ids_found = seed.num_ids_found;
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);

@@ -20,7 +20,7 @@
 namespace velamap {
 namespace {
 
-std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
+std::vector<ReportLeftOut> FindLeftOut(const SeedResult& seed) {
   std::set<std::string> used;
   for (const ModelImage& image : seed.model.images) used.insert(image.name);
   std::map<std::string, std::string> reasons;
@@ -28,7 +28,7 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
     reasons[frame.image_name] =
         frame.reason.empty() ? "fewer than two of its markers remain" : frame.reason;
   }
-  std::vector<LeftOutImage> left_out;
+  std::vector<ReportLeftOut> left_out;
   for (const std::string& name : seed.image_names) {
     if (used.count(name) > 0) continue;
     const auto it = reasons.find(name);

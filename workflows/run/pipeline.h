@@ -16,16 +16,11 @@
 
 namespace velamap {
 
-struct LeftOutImage {
-  std::string image_name;
-  std::string reason;
-};
-
 struct SeedResult {
   Registration registration;
   Model model;
   std::vector<std::string> image_names;  // of all images in the database, sorted
-  std::vector<LeftOutImage> left_out;    // images that the model does not hold
+  std::vector<ReportLeftOut> left_out;   // images that the model does not hold
   CornerErrors corner_errors;            // from the database
   int num_ids_found = 0;                 // different marker ids in the database
   std::optional<ReportClip> clip;        // of a video

@@ -19,10 +19,10 @@ namespace velamap {
 namespace {
 
 // Images that were left out for a reason that the user should know.
-std::vector<LeftOutImage> NeededImages(const ReconstructionSummary& summary) {
-  std::vector<LeftOutImage> images = summary.left_out;
+std::vector<ReportLeftOut> NeededImages(const ReconstructionSummary& summary) {
+  std::vector<ReportLeftOut> images = summary.left_out;
   images.erase(std::remove_if(images.begin(), images.end(),
-                              [](const LeftOutImage& image) {
+                              [](const ReportLeftOut& image) {
                                 return image.reason.rfind(kNotChosen, 0) == 0;
                               }),
                images.end());
@@ -37,11 +37,8 @@ std::string ColmapCommand(const WorkspacePaths& paths) {
 
 // Those that the registration dropped, and those that are not whole: as the report counts them.
 std::vector<ReportLeftOut> MarkersLeftOut(const ReconstructionSummary& summary) {
-  std::vector<ReportLeftOut> dropped;
-  for (const DroppedMarker& marker : summary.dropped_markers) {
-    dropped.push_back({std::to_string(marker.marker_id), marker.reason});
-  }
-  return AllMarkersLeftOut(std::move(dropped), summary.shape.shape, summary.shape.metrics);
+  return AllMarkersLeftOut(NamedById(summary.dropped_markers), summary.shape.shape,
+                           summary.shape.metrics);
 }
 
 void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
@@ -58,10 +55,7 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
     }
   }
   out << '\n';
-  std::vector<LeftOutImage> left_out;
-  for (const ReportLeftOut& marker : MarkersLeftOut(summary)) {
-    left_out.push_back({marker.name, marker.reason});
-  }
+  const std::vector<ReportLeftOut> left_out = MarkersLeftOut(summary);
   if (!left_out.empty()) WriteFormatted(out, "markers left out: {}\n", LeftOutText(left_out));
 }
 
@@ -79,7 +73,7 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
   WriteFormatted(out, "images: {} of {} used, {:.2g} px mean reprojection error\n",
                  summary.num_images, summary.num_images_total,
                  summary.shape.model_metrics.error_px.mean);
-  const std::vector<LeftOutImage> left_out = NeededImages(summary);
+  const std::vector<ReportLeftOut> left_out = NeededImages(summary);
   if (!left_out.empty()) WriteFormatted(out, "images left out: {}\n", LeftOutText(left_out));
 }
 
@@ -219,7 +213,7 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
   report.tables = {
       reasons,
       LeftOutTable("images_left_out", "image_name", summary.left_out,
-                   [](const LeftOutImage& image) { return image.image_name; }),
+                   [](const ReportLeftOut& image) { return image.name; }),
       LeftOutTable("markers_left_out", "marker_id", MarkersLeftOut(summary),
                    [](const ReportLeftOut& marker) { return std::stoi(marker.name); }),
       SectionTable(shape.sail.sections.sections),

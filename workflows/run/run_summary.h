@@ -21,7 +21,7 @@ enum class SummaryFormat { kText, kJson };
 struct ReconstructionSummary {
   int num_images = 0;  // images used
   int num_images_total = 0;
-  std::vector<LeftOutImage> left_out;
+  std::vector<ReportLeftOut> left_out;
   std::vector<DroppedMarker> dropped_markers;
   AdjustmentResult adjustment;
   ShapeExportReport shape;

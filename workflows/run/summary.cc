@@ -23,7 +23,7 @@ constexpr std::size_t kMaxNames = 3;
 
 struct ReasonGroup {
   std::string key;     // the reason without its numbers
-  std::string reason;  // of the first image
+  std::string reason;  // of the first of them
   std::vector<std::string> names;
 };
 
@@ -35,14 +35,14 @@ std::string WithoutNumbers(const std::string& text) {
   return rest;
 }
 
-std::vector<ReasonGroup> GroupByReason(const std::vector<LeftOutImage>& left_out) {
+std::vector<ReasonGroup> GroupByReason(const std::vector<ReportLeftOut>& left_out) {
   std::vector<ReasonGroup> groups;
-  for (const LeftOutImage& image : left_out) {
-    const std::string key = WithoutNumbers(image.reason);
+  for (const ReportLeftOut& one : left_out) {
+    const std::string key = WithoutNumbers(one.reason);
     auto it = std::find_if(groups.begin(), groups.end(),
                            [&](const ReasonGroup& group) { return group.key == key; });
-    if (it == groups.end()) it = groups.insert(it, {key, image.reason, {}});
-    it->names.push_back(image.image_name);
+    if (it == groups.end()) it = groups.insert(it, {key, one.reason, {}});
+    it->names.push_back(one.name);
   }
   return groups;
 }
@@ -123,7 +123,7 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
 
 }  // namespace
 
-std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
+std::string LeftOutText(const std::vector<ReportLeftOut>& left_out) {
   if (left_out.empty()) return "none";
   std::string text = fmt::format("{}", left_out.size());
   for (const ReasonGroup& group : GroupByReason(left_out)) {
@@ -132,12 +132,12 @@ std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
   return text;
 }
 
-std::string MarkersLeftOutText(const std::vector<DroppedMarker>& markers) {
-  std::vector<LeftOutImage> named;
+std::vector<ReportLeftOut> NamedById(const std::vector<DroppedMarker>& markers) {
+  std::vector<ReportLeftOut> named;
   for (const DroppedMarker& marker : markers) {
     named.push_back({std::to_string(marker.marker_id), marker.reason});
   }
-  return LeftOutText(named);
+  return named;
 }
 
 std::string ErrorText(const Statistics& statistics) {

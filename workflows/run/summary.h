@@ -11,12 +11,12 @@
 
 namespace velamap {
 
-// The number of images for each reason, with the first few names; "none" for an empty list. Reasons
-// that differ only in their numbers are counted together.
-std::string LeftOutText(const std::vector<LeftOutImage>& left_out);
+// How many are left out for each reason, with the first few names; "none" for an empty list.
+// Reasons that differ only in their numbers are counted together.
+std::string LeftOutText(const std::vector<ReportLeftOut>& left_out);
 
-// The same for markers.
-std::string MarkersLeftOutText(const std::vector<DroppedMarker>& markers);
+// The markers, named by their ids.
+std::vector<ReportLeftOut> NamedById(const std::vector<DroppedMarker>& markers);
 
 // `mean 0.120, std 0.050, median 0.100, min 0.010, max 0.600`.
 std::string ErrorText(const Statistics& statistics);

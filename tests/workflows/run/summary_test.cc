@@ -16,10 +16,10 @@ TEST(LeftOutTextTest, CountsReasonsThatDifferInNumbersTogether) {
 }
 
 TEST(LeftOutTextTest, MarkersAreCountedByReasonToo) {
-  EXPECT_EQ(MarkersLeftOutText({}), "none");
-  EXPECT_EQ(MarkersLeftOutText({{7, 3, "on line h1 it is 3.50 m from marker 6", true},
-                                {12, 4, "on line h2 it is 2.10 m from marker 11", true},
-                                {90, 1, "seen in 1 registered frames", false}}),
+  EXPECT_EQ(LeftOutText(NamedById({})), "none");
+  EXPECT_EQ(LeftOutText(NamedById({{7, 3, "on line h1 it is 3.50 m from marker 6", true},
+                                   {12, 4, "on line h2 it is 2.10 m from marker 11", true},
+                                   {90, 1, "seen in 1 registered frames", false}})),
             "3; 2: on line h1 it is 3.50 m from marker 6 (7, 12); 1: seen in 1 registered frames "
             "(90)");
 }
