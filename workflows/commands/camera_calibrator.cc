@@ -18,12 +18,9 @@
 namespace velamap {
 namespace {
 
-enum class WantedModel { kAuto, kPinhole, kSimpleRadial, kRadial, kOpenCV, kFullOpenCV, kFisheye };
-
 struct CameraCalibratorCommandOptions : CommandOptions {
   std::string report_path;
   std::string chessboard;
-  WantedModel camera_model = WantedModel::kAuto;
   BoardCalibrationOptions calibration;
 };
 
@@ -44,14 +41,14 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
           "largest number of pictures used; the most informative ones are chosen", FromTo(5, 500)},
-         Common(ChoiceOption("camera_model", &options->camera_model,
-                             {{WantedModel::kAuto, "auto"},
-                              {WantedModel::kPinhole, "SIMPLE_PINHOLE"},
-                              {WantedModel::kSimpleRadial, "SIMPLE_RADIAL"},
-                              {WantedModel::kRadial, "RADIAL"},
-                              {WantedModel::kOpenCV, "OPENCV"},
-                              {WantedModel::kFullOpenCV, "FULL_OPENCV"},
-                              {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
+         Common(ChoiceOption("camera_model", &options->calibration.calibration.camera_model,
+                             {{std::nullopt, "auto"},
+                              {CameraModel::kSimplePinhole, "SIMPLE_PINHOLE"},
+                              {CameraModel::kSimpleRadial, "SIMPLE_RADIAL"},
+                              {CameraModel::kRadial, "RADIAL"},
+                              {CameraModel::kOpenCV, "OPENCV"},
+                              {CameraModel::kFullOpenCV, "FULL_OPENCV"},
+                              {CameraModel::kOpenCVFisheye, "OPENCV_FISHEYE"}},
                              "auto: the model with the least error in pictures that were left out "
                              "of its fit"))}},
        {"Chessboard",
@@ -66,33 +63,12 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
        DescribeOptions(&options->general)}};
 }
 
-std::optional<CameraModel> ModelOf(WantedModel wanted) {
-  switch (wanted) {
-    case WantedModel::kAuto:
-      return std::nullopt;
-    case WantedModel::kPinhole:
-      return CameraModel::kSimplePinhole;
-    case WantedModel::kSimpleRadial:
-      return CameraModel::kSimpleRadial;
-    case WantedModel::kRadial:
-      return CameraModel::kRadial;
-    case WantedModel::kOpenCV:
-      return CameraModel::kOpenCV;
-    case WantedModel::kFullOpenCV:
-      return CameraModel::kFullOpenCV;
-    case WantedModel::kFisheye:
-      return CameraModel::kOpenCVFisheye;
-  }
-  return std::nullopt;
-}
-
 void Validate(CameraCalibratorCommandOptions* options) {
   BoardCalibrationOptions& calibration = options->calibration;
   RefuseVideoOptions(*options);
   calibration.detection.Check();
   calibration.video.Check();
   calibration.image_path = options->paths.image_path;
-  calibration.calibration.camera_model = ModelOf(options->camera_model);
   calibration.calibration.num_threads = options->general.num_threads;
   calibration.layout = LoadGivenLayout(options->markers, true);
   if (options->typed.count("Board.chessboard") == 0 && options->chessboard.empty()) {
