@@ -41,8 +41,7 @@ CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
           "--database_path database.db --layout_path layout.yml \\\n"
           "    --central_frames every:10 --output_path sweep.csv",
           {{"Input and output",
-            {DatabasePathOption(PathUse::kReadsFile, paths,
-                                "COLMAP database that marker_importer made"),
+            {DatabaseInputOption(paths),
              Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                                  "table of all central frames, CSV")),
              Common({"central_frames", &sweep->central_frames, "all|every:N|LIST",

@@ -26,8 +26,7 @@ CommandSyntax Declare(FrameRegistratorCommandOptions* options) {
           "finds where the camera was for each image; makes the start of the adjustment",
           "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
           {{"Input and output",
-            {DatabasePathOption(PathUse::kReadsFile, paths,
-                                "COLMAP database that marker_importer made"),
+            {DatabaseInputOption(paths),
              Required(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
                                  "folder of the seed model")),
              BesideIfLeftOut(

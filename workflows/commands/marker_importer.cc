@@ -54,9 +54,9 @@ CommandSyntax Declare(MarkerImporterCommandOptions* options) {
           "    --database_path database.db",
           {{"Input and output",
             {ImagePathOption(paths), CameraPathOption(paths), PriorShapePathOption(paths),
-             DatabasePathOption(
-                 PathUse::kWritesFile, paths,
-                 "COLMAP database, new or to be added to; images that it holds are skipped"),
+             Required(PathOption(
+                 "database_path", PathUse::kWritesFile, &paths->database_path,
+                 "COLMAP database, new or to be added to; images that it holds are skipped")),
              PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
                         "folder for the frames of a video that hold markers, as JPEG; left out: "
                         "none are written"),

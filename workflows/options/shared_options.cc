@@ -42,8 +42,9 @@ std::optional<Camera> LoadCalibration(const PathOptions& paths) {
   return ReadCalibration(paths.camera_path);
 }
 
-Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description) {
-  return Required(PathOption("database_path", use, &paths->database_path, description));
+Option DatabaseInputOption(PathOptions* paths) {
+  return Required(PathOption("database_path", PathUse::kReadsFile, &paths->database_path,
+                             "COLMAP database that marker_importer made"));
 }
 
 Option ImportAnewOption(MarkerImporterOptions* importer) {

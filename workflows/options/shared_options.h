@@ -61,8 +61,7 @@ Option Required(Option option);
 Option ImagePathOption(PathOptions* paths);
 Option CameraPathOption(PathOptions* paths);
 Option PriorShapePathOption(PathOptions* paths);
-// `use`: kReadsFile or kWritesFile.
-Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description);
+Option DatabaseInputOption(PathOptions* paths);
 Option ImportAnewOption(MarkerImporterOptions* importer);
 Option ModelInputOption(PathOptions* paths);
 Option ShapeInputOption(PathOptions* paths);
