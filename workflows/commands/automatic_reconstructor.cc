@@ -45,7 +45,6 @@ struct AutomaticReconstructorCommandOptions : CommandOptions {
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
   DesignOptions design;
-  Arguments arguments;  // as they were typed, for the report
   bool full_paths = false;
   SummaryFormat summary = SummaryFormat::kText;
 };
@@ -269,15 +268,8 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
 }  // namespace
 
 Command AutomaticReconstructor() {
-  const auto options = std::make_shared<AutomaticReconstructorCommandOptions>();
-  CommandSyntax syntax = Declare(options.get());
-  syntax.typed = &options->typed;
-  return {syntax, [options](const Arguments& arguments) {
-            options->arguments = arguments;
-            SetLogLevel(options->general.log_level);
-            Validate(options.get());
-            Run(*options);
-          }};
+  return MakeCommand(std::make_shared<AutomaticReconstructorCommandOptions>(), Declare, Validate,
+                     Run);
 }
 
 }  // namespace velamap

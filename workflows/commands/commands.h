@@ -28,7 +28,8 @@ Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*dec
                     void (*validate)(Options*), void (*run)(const Options&)) {
   CommandSyntax syntax = declare(options.get());
   syntax.typed = &options->typed;
-  return {syntax, [=](const Arguments&) {
+  return {syntax, [=](const Arguments& arguments) {
+            options->arguments = arguments;
             SetLogLevel(options->general.log_level);
             validate(options.get());
             run(*options);

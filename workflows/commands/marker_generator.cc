@@ -11,11 +11,8 @@
 namespace velamap {
 namespace {
 
-struct MarkerGeneratorCommandOptions {
-  std::string output_path;
-  GeneralOptions general;
+struct MarkerGeneratorCommandOptions : CommandOptions {
   PrintOptions print;
-  TypedNames typed;
 };
 
 CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
@@ -24,7 +21,7 @@ CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
           "--arrangement sail --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --hull_markers 8 \\\n"
           "    --marker_length 0.1 --output_path markers",
           {{"Input and output",
-            {Required(PathOption("output_path", PathUse::kWritesFolder, &options->output_path,
+            {Required(PathOption("output_path", PathUse::kWritesFolder, &options->paths.output_path,
                                  "folder for sheets.pdf, layout.yml, placement.svg and the like; "
                                  "new, empty, or as an earlier run left it")),
              PathOption("layout_path", PathUse::kReadsLayout, &options->print.layout_path,
@@ -65,14 +62,14 @@ void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& optio
   for (const std::string& file : report.files) {
     if (file.find('/') == std::string::npos) {
       WriteFormatted(out, "file: {}\n",
-                     (std::filesystem::path(options.output_path) / file).string());
+                     (std::filesystem::path(options.paths.output_path) / file).string());
     }
   }
-  out << "output_path: " << options.output_path << '\n';
+  out << "output_path: " << options.paths.output_path << '\n';
 }
 
 void Run(const MarkerGeneratorCommandOptions& options) {
-  Print(PrintMarkers(options.print, options.output_path), options, std::cout);
+  Print(PrintMarkers(options.print, options.paths.output_path), options, std::cout);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exporters/scale/metric_scale.h"
 #include "importer/camera/camera.h"
@@ -54,6 +55,7 @@ struct CommandOptions {
   GeneralOptions general;
   Preset preset;
   TypedNames typed;
+  std::vector<std::string> arguments;  // as they were typed
 };
 
 Option Required(Option option);
