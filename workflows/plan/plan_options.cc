@@ -8,11 +8,6 @@
 #include "importer/geometry/units.h"
 
 namespace velamap {
-namespace {
-
-constexpr double kMaxLinearView_deg = 150.0;
-
-}  // namespace
 
 OptionGroup DescribeOptions(ShootPlanOptions* options) {
   return {
@@ -76,6 +71,7 @@ Camera CameraOfFieldOfView(const ShootPlanOptions& options) {
   const double half_px = 0.5 * options.width_px;
   Camera camera{CameraModel::kPinhole, options.width_px, options.height_px, {}};
   if (options.lens == LensMode::kLinear) {
+    constexpr double kMaxLinearView_deg = 150.0;
     if (*options.field_of_view_deg > kMaxLinearView_deg) {
       throw InputError(
           fmt::format("--field_of_view: {} degrees need a lens that bends lines; give --lens wide",

@@ -14,6 +14,13 @@
 namespace velamap {
 namespace {
 
+// "1/250 s".
+std::string ExposureText(double exposure_s) {
+  if (!(exposure_s > 0)) return "none";
+  return exposure_s < 0.5 ? fmt::format("1/{:.0f} s", std::ceil(1 / exposure_s))
+                          : fmt::format("{:.1f} s", exposure_s);
+}
+
 std::string PrecisionText(const PlannedVariant& variant) {
   if (!variant.precision) return "no shape: " + variant.failure;
   const PlanPrecision& precision = *variant.precision;
@@ -84,12 +91,6 @@ struct MarkerExpectation {
 };
 
 }  // namespace
-
-std::string ExposureText(double exposure_s) {
-  if (!(exposure_s > 0)) return "none";
-  return exposure_s < 0.5 ? fmt::format("1/{:.0f} s", std::ceil(1 / exposure_s))
-                          : fmt::format("{:.1f} s", exposure_s);
-}
 
 std::string RecommendationText(const ShootPlan& plan) {
   if (!plan.recommended) return "none, until the bad reasons of the verdict are seen to";

@@ -9,9 +9,6 @@
 
 namespace velamap {
 
-// "1/250 s".
-std::string ExposureText(double exposure_s);
-
 // One sentence: where to film from, how far around, with what shutter; of a better path where the
 // planned one is bad, and "none" where there is no such path.
 std::string RecommendationText(const ShootPlan& plan);
