@@ -23,6 +23,11 @@ double CpuSeconds(int who) {
   return Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
 }
 
+BusyTime Now() {
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now().time_since_epoch();
+  return {wall.count(), CpuSeconds(RUSAGE_SELF) + CpuSeconds(RUSAGE_CHILDREN)};
+}
+
 double PeakMemoryMb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -39,13 +44,8 @@ double FramesPerSecond(const StageTime& time) {
 
 StageClock::StageClock() : begin_(Now()), last_(begin_) {}
 
-StageClock::Instant StageClock::Now() {
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now().time_since_epoch();
-  return {wall.count(), CpuSeconds(RUSAGE_SELF) + CpuSeconds(RUSAGE_CHILDREN)};
-}
-
 void StageClock::End(const std::string& name, int num_frames) {
-  const Instant now = Now();
+  const BusyTime now = Now();
   stages_.push_back(
       {name, "", now.wall_s - last_.wall_s, now.cpu_s - last_.cpu_s, num_frames, PeakMemoryMb()});
   last_ = now;

@@ -33,14 +33,8 @@ class StageClock {
   std::vector<StageTime> Times() const;
 
  private:
-  struct Instant {
-    double wall_s = 0.0;
-    double cpu_s = 0.0;
-  };
-  static Instant Now();
-
-  Instant begin_;
-  Instant last_;
+  BusyTime begin_;
+  BusyTime last_;
   std::vector<StageTime> stages_;
 };
 
