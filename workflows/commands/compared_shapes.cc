@@ -17,6 +17,7 @@
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
+#include "workflows/options/shared_options.h"
 
 namespace velamap {
 namespace {
@@ -44,11 +45,10 @@ bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
 
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option) {
-  const bool is_folder = IsFolder(path);
   UncertainShape result;
-  result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
+  result.shape = ReadShapeCsv(ShapeFile(path));
   fs::path folder = uncertainty_path;
-  if (folder.empty() && is_folder) {
+  if (folder.empty() && IsFolder(path)) {
     folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
   }
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
