@@ -5,21 +5,35 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
 
-// Empty where no Chromium is on the PATH.
-std::string FindBrowser();
+// Tests of the pages in a folder, which a test suite makes in *dir_; skipped where no Chromium is
+// on the PATH.
+class BrowserTest : public testing::Test {
+ protected:
+  static void TearDownTestSuite() { delete dir_; }
 
-// Opens the address without a network.
-ProgramRun OpenInBrowser(const std::string& browser, const std::string& address,
-                         std::vector<std::string> arguments);
+  void SetUp() override;
 
-// What a page wrote to the console, but for the graphics driver's remarks on taking pictures.
-std::vector<std::string> ConsoleLines(const std::string& log);
+  // Opens the page without a network and returns the run; its console must stay silent, but for the
+  // graphics driver's remarks on taking pictures.
+  ProgramRun Open(const std::string& page, std::vector<std::string> arguments) const;
+
+  // A picture of the page, which stays for whoever wants to look.
+  cv::Mat Screenshot(const std::string& page, int width, int height, const std::string& name,
+                     std::vector<std::string> more = {}) const;
+
+  static TempDir* dir_;
+
+ private:
+  std::string browser_;
+};
 
 // Part of the pixels that differ by more than a shade.
 double PartThatDiffers(const cv::Mat& a, const cv::Mat& b);

@@ -1,11 +1,9 @@
 // comparison.html in a real browser: headless Chromium, which draws WebGL in software.
 
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/comparison_page/comparison_page.h"
@@ -17,15 +15,11 @@
 namespace velamap {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-const cv::Scalar kRed(43, 24, 178), kBlue(172, 102, 33), kWhite(247, 247, 247);  // BGR
-
 // Two trims of one boat: one pushed out at the bottom and in at the top, and the same again.
-class ComparisonBrowser : public testing::Test {
+class ComparisonBrowser : public BrowserTest {
  protected:
   static void SetUpTestSuite() {
     dir_ = new TempDir;
@@ -34,7 +28,6 @@ class ComparisonBrowser : public testing::Test {
                   "<!DOCTYPE html><body style=\"margin:0\"><iframe src=\"comparison.html\" "
                   "width=\"390\" height=\"3000\" style=\"border:0\"></iframe>");
   }
-  static void TearDownTestSuite() { delete dir_; }
 
   static void Write(const std::string& file, const std::vector<std::string>& names,
                     const std::string& reference_name) {
@@ -63,42 +56,7 @@ class ComparisonBrowser : public testing::Test {
     std::ofstream out(*dir_ / file, std::ios::binary);
     WriteComparisonPage(input, out);
   }
-
-  void SetUp() override {
-    browser_ = FindBrowser();
-    if (browser_.empty()) GTEST_SKIP() << "chromium is not on the PATH";
-  }
-
-  // Opens the page and returns the run; its console must stay silent.
-  ProgramRun Open(const std::string& page, const std::vector<std::string>& arguments) const {
-    const ProgramRun run =
-        OpenInBrowser(browser_, "file://" + dir_->path().string() + "/" + page, arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_THAT(ConsoleLines(run.err), ElementsAre());
-    return run;
-  }
-
-  // A picture of the page, which stays for whoever wants to look.
-  cv::Mat Screenshot(const std::string& page, int width, int height, const std::string& name,
-                     const std::vector<std::string>& more = {}) const {
-    fs::create_directories(VELAMAP_PICTURE_DIR);
-    const std::string path = std::string(VELAMAP_PICTURE_DIR) + "/" + name;
-    fs::remove(path);
-    std::vector<std::string> arguments = {
-        "--screenshot=" + path,
-        "--window-size=" + std::to_string(width) + "," + std::to_string(height)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    Open(page, arguments);
-    const cv::Mat picture = cv::imread(path);
-    EXPECT_EQ(picture.cols, width) << path;
-    return picture;
-  }
-
-  static TempDir* dir_;
-  std::string browser_;
 };
-
-TempDir* ComparisonBrowser::dir_ = nullptr;
 
 TEST_F(ComparisonBrowser, FillsThePageWithoutErrors) {
   std::string dom = Open("comparison.html", {"--dump-dom"}).out;

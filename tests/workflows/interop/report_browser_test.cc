@@ -9,7 +9,6 @@
 
 #include <gmock/gmock.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "exporters/report/report_writer.h"
 #include "tests/exporters/report/report_example.h"
@@ -43,7 +42,7 @@ ReportSurface SurfaceThrough(const MarkerShape& shape) {
 }
 
 // The largest example asked for: 130 markers, 100 cameras, with sigmas, sections and a surface.
-class ReportBrowser : public testing::Test {
+class ReportBrowser : public BrowserTest {
  protected:
   static void SetUpTestSuite() {
     dir_ = new TempDir;
@@ -74,41 +73,10 @@ class ReportBrowser : public testing::Test {
                   "<!DOCTYPE html><body style=\"margin:0\"><iframe src=\"report.html\" "
                   "width=\"390\" height=\"1500\" style=\"border:0\"></iframe>");
   }
-  static void TearDownTestSuite() { delete dir_; }
 
-  void SetUp() override {
-    browser_ = FindBrowser();
-    if (browser_.empty()) GTEST_SKIP() << "chromium is not on the PATH";
-  }
-
-  // Opens the page and returns the run; its console must stay silent.
-  ProgramRun Open(const std::string& page, std::vector<std::string> arguments) const {
-    const ProgramRun run = OpenInBrowser(browser_, "file://" + dir_->path().string() + "/" + page,
-                                         std::move(arguments));
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_THAT(ConsoleLines(run.err), ElementsAre());
-    return run;
-  }
-
-  // A picture of the page, which stays for whoever wants to look.
-  cv::Mat Screenshot(const std::string& page, int width, int height,
-                     const std::string& name) const {
-    fs::create_directories(VELAMAP_PICTURE_DIR);
-    const std::string path = std::string(VELAMAP_PICTURE_DIR) + "/" + name;
-    fs::remove(path);
-    Open(page, {"--screenshot=" + path,
-                "--window-size=" + std::to_string(width) + "," + std::to_string(height)});
-    const cv::Mat picture = cv::imread(path);
-    EXPECT_EQ(picture.cols, width) << path;
-    return picture;
-  }
-
-  static TempDir* dir_;
   static int num_markers_;
-  std::string browser_;
 };
 
-TempDir* ReportBrowser::dir_ = nullptr;
 int ReportBrowser::num_markers_ = 0;
 
 TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
