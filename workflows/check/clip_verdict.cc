@@ -1,7 +1,6 @@
 #include "workflows/check/clip_verdict.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "importer/base/atomic_output.h"
 #include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
 #include "importer/text/write_formatted.h"

@@ -15,7 +15,6 @@
 #include "exporters/shape_exporter.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
-#include "importer/base/files.h"
 #include "importer/base/numbers.h"
 #include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>

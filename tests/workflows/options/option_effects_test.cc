@@ -1,6 +1,5 @@
 #include "workflows/options/option_effects.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
-#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"

@@ -7,10 +7,8 @@
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
 
-#include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/database/colmap_database.h"
-#include "tests/support/error_matchers.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
 
