@@ -28,4 +28,15 @@ Model TrueModel(const SyntheticScene& scene, double unit_m) {
   return model;
 }
 
+MarkerShape TrueShape(const SyntheticScene& scene) {
+  MarkerShape shape;
+  for (const auto& [marker_id, points] : scene.x_in_world) {
+    ShapeMarker marker;
+    marker.marker_id = marker_id;
+    for (std::size_t i = 0; i < points.size(); ++i) marker.x_in_shape_m[i] = points[i];
+    shape.markers.push_back(marker);
+  }
+  return shape;
+}
+
 }  // namespace velamap

@@ -17,6 +17,7 @@
 #include "tests/support/render/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
@@ -51,17 +52,6 @@ std::vector<cv::Mat> RenderAll(const SyntheticScene& scene) {
     frames.push_back(color);
   }
   return frames;
-}
-
-MarkerShape TrueShape(const SyntheticScene& scene) {
-  MarkerShape shape;
-  for (const auto& [marker_id, points] : scene.x_in_world) {
-    ShapeMarker marker;
-    marker.marker_id = marker_id;
-    for (std::size_t i = 0; i < points.size(); ++i) marker.x_in_shape_m[i] = points[i];
-    shape.markers.push_back(marker);
-  }
-  return shape;
 }
 
 constexpr int kNumBare = 3;

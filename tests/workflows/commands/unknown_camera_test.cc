@@ -12,6 +12,7 @@
 #include "tests/support/render/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
@@ -59,16 +60,9 @@ class UnknownCameraTest : public ::testing::Test {
   }
 
   double ShapeError(const std::string& workspace) {
-    MarkerShape truth;
-    for (const auto& [marker_id, points] : scene_->x_in_world) {
-      ShapeMarker marker;
-      marker.marker_id = marker_id;
-      for (std::size_t i = 0; i < points.size(); ++i) marker.x_in_shape_m[i] = points[i];
-      truth.markers.push_back(marker);
-    }
     const MarkerShape shape =
         ReadShapeCsv((dir_.path() / workspace / "shape" / "shape.csv").string());
-    return CompareShapes(shape, truth).distance_m.rms;
+    return CompareShapes(shape, TrueShape(*scene_)).distance_m.rms;
   }
 
   static SyntheticScene* scene_;
