@@ -1,6 +1,5 @@
 # dataset.table runs workflows/dataset over a few inputs cut from sample_project, dataset.slurm the same
 # workflow on a Slurm of one node, and workflows.run_batch the script for a few clips.
-find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   foreach(test table slurm)
     add_test(NAME dataset.${test}

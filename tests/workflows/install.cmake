@@ -1,6 +1,5 @@
 # install.tree installs into a temporary folder and looks at what is there. The package in a fresh Debian
 # is tried by workflows/package.sh --try, which needs the network.
-find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   add_test(NAME install.tree
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/install/install_test.sh

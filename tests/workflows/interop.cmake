@@ -33,7 +33,6 @@ target_compile_definitions(colmap_interop_test PRIVATE
   VELAMAP_PICTURE_DIR="${CMAKE_CURRENT_BINARY_DIR}/pictures")
 
 # interop.colmap_lines runs the lines of COLMAP that workflows/colmap.md gives.
-find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   add_test(NAME interop.colmap_lines
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/interop/colmap_lines_test.sh

@@ -2,7 +2,6 @@
 # clip have to give a table whose figures are those of a good reconstruction. studies.camera_draws runs
 # three draws of random cameras. studies.readmes holds the measured numbers in the READMEs to the stored
 # results of the studies.
-find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   add_test(NAME studies.parameters
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/studies_test.sh
