@@ -1,22 +1,15 @@
 // Commands that run COLMAP: the real one, and scripts that fail as it can.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
-#include "tests/support/synthetic_scene.h"
-#include "tests/support/temp_dir.h"
-#include "tests/workflows/run_velamap.h"
+#include "tests/workflows/commands/stages_fixture.h"
 
 namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
-namespace fs = std::filesystem;
 
 // A database of a synthetic scene and its seed model.
-class ColmapCommandsTest : public ::testing::Test {
+class ColmapCommandsTest : public StagesTest {
  protected:
   void SetUp() override {
     SyntheticSceneOptions options;
@@ -25,11 +18,7 @@ class ColmapCommandsTest : public ::testing::Test {
     options.num_frames = 8;
     SyntheticScene scene = MakeSyntheticScene(options);
     AddNoise({0.2, 0.0, 0.0, 0.0, 1}, &scene);
-    {
-      ColmapDatabase database(path("database.db"), ColmapDatabase::Mode::kReadWriteCreate);
-      const CameraId camera_id = database.AddCamera(scene.camera);
-      for (const FrameDetections& frame : scene.frames) database.AddImage(camera_id, frame, "test");
-    }
+    WriteDatabase(scene, path("database.db"), options.num_frames, All);
     const ProgramRun run =
         RunVelamap({"frame_registrator", "--database_path", path("database.db"), "--marker_length",
                     "0.1", "--output_path", path("seed"), "--registration_path", path("table.csv"),
@@ -62,10 +51,6 @@ class ColmapCommandsTest : public ::testing::Test {
     // The temporary folders are gone too.
     for (const std::string& name : ListFolder(dir_.path())) EXPECT_NE(name.front(), '.') << name;
   }
-
-  std::string path(const std::string& name) const { return (dir_ / name).string(); }
-
-  TempDir dir_;
 };
 
 TEST_F(ColmapCommandsTest, AdjustsAndExports) {

@@ -4,30 +4,24 @@
 #include <regex>
 #include <sstream>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/aruco.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/importer/marker_builders.h"
-#include "tests/support/synthetic_scene.h"
-#include "tests/support/temp_dir.h"
 #include "tests/support/true_model.h"
-#include "tests/workflows/run_velamap.h"
+#include "tests/workflows/commands/stages_fixture.h"
 
 namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
-namespace fs = std::filesystem;
 using Options = std::map<std::string, std::string>;
 
 // A cameras.txt of COLMAP for the clip.
 constexpr char kCamera[] = "1 PINHOLE 320 200 300 300 160 100\n";
 
-class LongPathTest : public ::testing::TestWithParam<std::string> {
+class LongPathTest : public StagesTest, public ::testing::WithParamInterface<std::string> {
  protected:
   // What each command needs to succeed, or to fail for want of markers after all paths were used.
   Options OptionsOf(const std::string& command) {
@@ -58,20 +52,9 @@ class LongPathTest : public ::testing::TestWithParam<std::string> {
   }
 
   void SetUp() override {
-    SyntheticSceneOptions options;
-    options.num_rows = 3;
-    options.num_columns = 4;
-    options.num_frames = 8;
-    options.video = false;
-    const SyntheticScene scene = MakeSyntheticScene(options);
-    WriteModel(TrueModel(scene, kOtherUnit_m), path("model"), ModelFormat::kBinary);
-    {
-      ColmapDatabase database(path("database.db"), ColmapDatabase::Mode::kReadWriteCreate);
-      const CameraId camera_id = database.AddCamera(scene.camera);
-      for (const FrameDetections& frame : scene.frames) database.AddImage(camera_id, frame, "test");
-    }
-    const ProgramRun run = RunVelamap({"shape_exporter", "--input_path", path("model"),
-                                       "--marker_length", "0.1", "--shape_path", path("shape")});
+    WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
+    WriteDatabase(scene_, path("database.db"), 8, All);
+    const ProgramRun run = Export();
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
 
@@ -97,10 +80,6 @@ class LongPathTest : public ::testing::TestWithParam<std::string> {
     }
     return names;
   }
-
-  std::string path(const std::string& name) const { return (dir_ / name).string(); }
-
-  TempDir dir_;
 };
 
 TEST_P(LongPathTest, IsAnInputError) {

@@ -25,7 +25,8 @@ inline SyntheticScene MakeScene() {
   return MakeSyntheticScene(options);
 }
 
-// Keeps every frame whose index `keep` accepts, and of its markers those that `keep_id` accepts.
+// Keeps the first `num_frames` frames, and of their markers those that `keep_id` accepts by the
+// index of the frame and the id.
 template <typename KeepId>
 void WriteDatabase(const SyntheticScene& scene, const fs::path& path, int num_frames,
                    KeepId keep_id) {
