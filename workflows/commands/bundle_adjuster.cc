@@ -61,11 +61,6 @@ void Validate(BundleAdjusterCommandOptions* options) {
   options->adjustment.Complete(options->general.num_threads);
 }
 
-// COLMAP's adjustment needs no layout.
-Layout LoadAdjustmentLayout(const BundleAdjusterCommandOptions& options) {
-  return options.adjustment.UsesMarkers() ? LoadLayout(options.markers, false) : Layout{};
-}
-
 // Takes the image points of the model from the database, because an earlier adjustment may have
 // removed a rolling shutter from them.
 void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOptions& paths,
@@ -125,7 +120,8 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
 
 void Run(const BundleAdjusterCommandOptions& options) {
   StageClock clock;
-  const Layout layout = LoadAdjustmentLayout(options);
+  Layout layout;  // COLMAP's adjustment needs none
+  if (options.adjustment.UsesMarkers()) layout = LoadLayout(options.markers, false);
   Model model = ReadModel(options.paths.input_path);
   AdjustmentOptions adjustment = options.adjustment;
   const CornerErrors corner_errors = LoadCorners(options, layout, &adjustment, &model);

@@ -1,10 +1,10 @@
 #include "importer/database_merger.h"
-#include "importer/text/write_formatted.h"
 
 #include <iostream>
 #include <memory>
 
 #include "importer/base/replacement.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/shared_options.h"
@@ -25,7 +25,7 @@ CommandSyntax Declare(DatabaseMergerCommandOptions* options) {
           {{"Input and output",
             {Required({"database_paths", &options->database_paths, "databases",
                        "databases of all parts, in any order: part1.db,part2.db"}),
-             Required(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
+             Required(PathOption("output_path", PathUse::kWritesFile, &options->merger.output_path,
                                  "merged database, the same as from one import of the whole video; "
                                  "replaces an earlier database of velamap"))}},
            DescribeOptions(&options->markers, true),
@@ -33,7 +33,6 @@ CommandSyntax Declare(DatabaseMergerCommandOptions* options) {
 }
 
 void Validate(DatabaseMergerCommandOptions* options) {
-  options->merger.output_path = options->paths.output_path;
   options->merger.database_paths =
       PathsFromText(options->database_paths, "--database_paths", "part1.db,part2.db");
   // ParseOptions() checks only options that hold a single path.

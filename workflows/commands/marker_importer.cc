@@ -57,7 +57,8 @@ CommandSyntax Declare(MarkerImporterCommandOptions* options) {
              Required(PathOption(
                  "database_path", PathUse::kWritesFile, &paths->database_path,
                  "COLMAP database, new or to be added to; images that it holds are skipped")),
-             PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
+             PathOption("frame_output_path", PathUse::kAddsToFolder,
+                        &options->importer.frame_output_path,
                         "folder for the frames of a video that hold markers, as JPEG; left out: "
                         "none are written"),
              PartOption(&options->importer.part), ImportAnewOption(&options->importer),
@@ -75,7 +76,6 @@ void Validate(MarkerImporterCommandOptions* options) {
   MarkerImporterOptions& importer = options->importer;
   CompleteImporter(*options, &importer);
   importer.database_path = options->paths.database_path;
-  importer.frame_output_path = options->paths.frame_output_path;
 }
 
 void Print(const ImportReport& report, const PathOptions& paths, std::ostream& out) {

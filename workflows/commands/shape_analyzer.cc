@@ -83,8 +83,6 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
 struct ModelOfShape {
   std::optional<Model> model;
   std::optional<AdjustmentUncertainty> uncertainty;
-
-  const PointCovariance* Covariance() const { return uncertainty ? &uncertainty->points : nullptr; }
 };
 
 ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
@@ -102,7 +100,7 @@ MetricsReport Analyze(const ShapeAnalyzerCommandOptions& options) {
   const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
   const std::optional<Layout> layout = LoadGivenLayout(options.markers, false);
   const ModelOfShape source = LoadModel(shape, options.paths);
-  const PointCovariance* covariance = source.Covariance();
+  const PointCovariance* covariance = source.uncertainty ? &source.uncertainty->points : nullptr;
   MetricsReport report;
   if (layout) {
     const ShapeMetrics metrics = ComputeShapeMetrics(shape, *layout, covariance);

@@ -31,7 +31,6 @@ struct PathOptions {
   std::string camera_path;
   std::string prior_shape_path;
   std::string database_path;
-  std::string frame_output_path;
   std::string workspace_path;
   std::string input_path;
   std::string output_path;
