@@ -1,10 +1,5 @@
 // The command shape_comparer on files.
 
-#include <filesystem>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/formats/mesh_writer.h"
@@ -12,8 +7,7 @@
 #include "importer/base/atomic_output.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "tests/exporters/compare/example_comparison.h"
-#include "tests/support/temp_dir.h"
-#include "tests/workflows/run_velamap.h"
+#include "tests/workflows/commands/stages_fixture.h"
 
 namespace velamap {
 namespace {
@@ -22,7 +16,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-namespace fs = std::filesystem;
 
 constexpr const char* kLayout = R"(
 dictionary: DICT_4X4_250
@@ -39,7 +32,7 @@ parts:
   hull: {markers: [120, 121, 122, 123, 124, 125], rigid: true}
 )";
 
-class ShapeComparerTest : public ::testing::Test {
+class ShapeComparerTest : public StagesTest {
  protected:
   void SetUp() override {
     WriteTextFile(dir_ / "layout.yml", kLayout);
@@ -59,23 +52,12 @@ class ShapeComparerTest : public ::testing::Test {
     WriteFileAtomically(dir_ / name, [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); });
   }
 
-  std::string path(const std::string& name) const { return (dir_ / name).string(); }
-
   ProgramRun Compare(const std::string& reference, std::vector<std::string> more = {}) {
     std::vector<std::string> arguments = {"shape_comparer", "--shape_path", path("a/shape"),
                                           "--reference_path", path(reference)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return RunVelamap(arguments);
   }
-
-  void ExpectError(const ProgramRun& run, int exit_code, const std::string& part) {
-    EXPECT_EQ(run.exit_code, exit_code) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(part));
-    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
-    EXPECT_EQ(run.out, "");
-  }
-
-  TempDir dir_;
 };
 
 TEST_F(ShapeComparerTest, TwoShapesByTheHull) {
