@@ -19,12 +19,12 @@ namespace {
 // From places on the flat sail, mm, to space, m: x from luff to leech, y to leeward, z up.
 using BentSurface = std::function<Eigen::Vector3d(const Eigen::Vector2d&)>;
 
+Eigen::Vector3d OnFlatSurface(const Eigen::Vector2d& place_mm) {
+  return kMPerMm * Eigen::Vector3d(place_mm.x(), 0, place_mm.y());
+}
+
 BentSurface Bend(const Placement& placement, double camber, double twist_rad) {
-  if (placement.sail_mm.empty()) {
-    return [](const Eigen::Vector2d& place_mm) -> Eigen::Vector3d {
-      return kMPerMm * Eigen::Vector3d(place_mm.x(), 0, place_mm.y());
-    };
-  }
+  if (placement.sail_mm.empty()) return OnFlatSurface;
   const Eigen::Vector2d clew_mm = placement.sail_mm[1];
   const double luff_mm = placement.sail_mm[2].y(), foot_mm = clew_mm.norm();
   return [=](const Eigen::Vector2d& place_mm) -> Eigen::Vector3d {
@@ -76,15 +76,12 @@ void AddRigidPart(const LayoutPart& part, const Placement& placement, const Layo
   const Eigen::Vector2d down_mm(0, -3 * length_mm);
   const Eigen::Vector2d begin_mm = lowest.markers.front().center_mm + down_mm;
   const Eigen::Vector2d end_mm = lowest.markers.back().center_mm + down_mm;
-  const auto flat = [](const Eigen::Vector2d& place_mm) -> Eigen::Vector3d {
-    return kMPerMm * Eigen::Vector3d(place_mm.x(), 0, place_mm.y());
-  };
   for (std::size_t i = 0; i < part.marker_ids.size(); ++i) {
     const double place = (i + 0.5) / part.marker_ids.size();
     const int id = part.marker_ids[i];
     shape->markers.push_back(
         MakeMarker(id, part.name, MarkerLength(layout, id),
-                   TouchSurface(flat, begin_mm + place * (end_mm - begin_mm))));
+                   TouchSurface(OnFlatSurface, begin_mm + place * (end_mm - begin_mm))));
   }
 }
 
