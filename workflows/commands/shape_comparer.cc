@@ -35,12 +35,6 @@ struct ShapeComparerCommandOptions : CommandOptions {
   std::string surface_path;
   std::string comparison_path;
   std::optional<double> color_limit_mm;
-
-  std::vector<std::string> ShapePaths() const {
-    std::vector<std::string> shape_paths = {paths.shape_path};
-    shape_paths.insert(shape_paths.end(), series_paths.begin(), series_paths.end());
-    return shape_paths;
-  }
 };
 
 OptionGroup InputGroup(ShapeComparerCommandOptions* options) {
@@ -197,7 +191,9 @@ void Validate(ShapeComparerCommandOptions* options) {
 
 std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, const Layout& layout,
                                    std::optional<UncertainShape>* reference) {
-  const std::vector<std::string> paths = options.ShapePaths(), names = NamesOfShapes(paths);
+  std::vector<std::string> paths = {options.paths.shape_path};
+  paths.insert(paths.end(), options.series_paths.begin(), options.series_paths.end());
+  const std::vector<std::string> names = NamesOfShapes(paths);
   const std::string& reference_path = options.paths.reference_path;
   std::vector<UncertainShape> shapes;
   for (const std::string& path : paths) {
