@@ -1,6 +1,7 @@
 #include "importer/marker_importer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <tuple>
@@ -13,9 +14,9 @@
 #include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/base/stage_timer.h"
-#include "importer/continued_tracking.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
+#include "importer/database/tracking_table.h"
 #include "importer/formation/formation_sampling.h"
 #include "importer/frame_pipeline.h"
 #include "importer/import_anew.h"
@@ -62,6 +63,31 @@ void WarnOfSeveralCameras(const std::string& path, const ColmapDatabase& databas
       "{}: holds images of {} cameras or zooms, and one tone curve is estimated for all of them; "
       "if the cameras are of different kinds, import those of each into a database of its own",
       path, kinds.size());
+}
+
+// The tracking that the database holds. For photographs, and if the earlier import searched other
+// frames of the video, the state before the first frame.
+TrackingState ContinuedTracking(const MarkerImporterOptions& options,
+                                const ColmapDatabase& database) {
+  TrackingState first;
+  first.first_frame = options.video.first_frame;
+  first.frame_step = options.video.frame_step;
+  if (IsFolder(options.image_path)) return first;
+  const std::optional<TrackingState> known = database.ReadTracking();
+  const bool is_same =
+      known && known->first_frame == first.first_frame && known->frame_step == first.frame_step;
+  return is_same ? *known : first;
+}
+
+// Adds the names of all frames that have been searched, because the database has no row for those
+// without markers.
+std::vector<std::string> WithSearchedFrames(std::vector<std::string> known_names,
+                                            const TrackingState& tracking) {
+  for (std::int64_t number = tracking.first_frame; number <= tracking.last_frame;
+       number += tracking.frame_step) {
+    known_names.push_back(NameOfVideoFrame(static_cast<int>(number)));
+  }
+  return known_names;
 }
 
 // Imports all frames that the database does not hold. Decoder and pictures are freed at the end,
