@@ -1,13 +1,14 @@
 #include "importer/pattern/pattern_fit.h"
 
 #include <cmath>
+#include <cstdint>
 
 #include <Eigen/Cholesky>
 
 #include "importer/base/error.h"
+#include "importer/geometry/unit_square_map.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/foreign_pixels.h"
-#include "importer/pattern/mismatched_cells.h"
 #include "importer/pattern/pattern_picture.h"
 #include "importer/pattern/pattern_problem.h"
 
@@ -41,6 +42,37 @@ std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
         std::sqrt(0.5 * variances.segment<2>(2 * i).sum() * noise.VarianceGray());
   }
   return refined;
+}
+
+// Column and row of each cell in the middle of which the image is darker than the model of a light
+// cell, or lighter than the model of a dark cell, by more than a quarter of the contrast. An object
+// in front of the marker may cause this as well as a misread code.
+VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> MismatchedCells(const PatternProblem& problem,
+                                                              const PatternMinimum& minimum) {
+  constexpr double kMismatch = 0.25;  // of the contrast
+  const double limit_gray = kMismatch * ContrastOf(problem, minimum);
+  const P::Vector& parameters = minimum.parameters;
+  const PatternPicture picture(problem.model, parameters);
+  const UnitSquareMap map(CornersOf(parameters));
+  const int n = problem.model.num_cells;
+  std::vector<cv::Point> mismatched;
+  PatternPixels modelled;
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column < n; ++column) {
+      const double u = (column + 0.5) / n, v = (row + 0.5) / n;
+      const Eigen::Vector2d x_px = map.ToImage(u, v) +
+                                   4 * u * (1 - u) * parameters.segment<2>(P::kBendU) +
+                                   4 * v * (1 - v) * parameters.segment<2>(P::kBendV);
+      const Eigen::Vector2d place = x_px - problem.model.center_px;
+      picture.At(AllLanes(place.x()), AllLanes(place.y()), &modelled);
+      const double excess_gray = InterpolatePatch(problem.patch, x_px) - modelled.gray[0];
+      const bool is_light = problem.cells.at<std::uint8_t>(row, column) != 0;
+      if ((is_light ? -excess_gray : excess_gray) > limit_gray) {
+        mismatched.emplace_back(column, row);
+      }
+    }
+  }
+  return mismatched;
 }
 
 }  // namespace
