@@ -20,6 +20,8 @@ extern "C" {
 namespace velamap {
 namespace {
 
+static_assert(VideoPacket::kNoTime == AV_NOPTS_VALUE);
+
 using FormatPtr = std::unique_ptr<AVFormatContext, FfmpegFreer>;
 
 // After this many failures in a row, the rest of the file is considered broken.
@@ -171,11 +173,8 @@ std::vector<VideoPacket> VideoStream::ListPackets(std::size_t max_num_packets) {
   std::vector<VideoPacket> packets;
   while (packets.size() < max_num_packets && ReadPacket()) {
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return {};
-    const auto time = [](std::int64_t value) {
-      return value == AV_NOPTS_VALUE ? VideoPacket::kNoTime : value;
-    };
-    packets.push_back({time(packet_->pts), (packet_->flags & AV_PKT_FLAG_KEY) != 0,
-                       (packet_->flags & AV_PKT_FLAG_DISCARD) == 0, time(packet_->dts)});
+    packets.push_back({packet_->pts, (packet_->flags & AV_PKT_FLAG_KEY) != 0,
+                       (packet_->flags & AV_PKT_FLAG_DISCARD) == 0, packet_->dts});
   }
   return packets;
 }
@@ -239,9 +238,7 @@ bool VideoStream::ReadPacket() {
 
 int VideoStream::SendPacket(AVPacket* packet) {
   if (packet != nullptr) {
-    codec_->reordered_opaque =
-        damage_.Add(packet->pts == AV_NOPTS_VALUE ? VideoPacket::kNoTime : packet->pts,
-                    (packet->flags & AV_PKT_FLAG_KEY) != 0);
+    codec_->reordered_opaque = damage_.Add(packet->pts, (packet->flags & AV_PKT_FLAG_KEY) != 0);
     if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) damage_.Mark(codec_->reordered_opaque);
   }
   return Checked(avcodec_send_packet(codec_.get(), packet));
