@@ -16,14 +16,8 @@ constexpr double kPointsPerMm = 72.0 / 25.4;
 constexpr double kHaloOfSize = 0.4;  // width of the halo's stroke / font size
 constexpr char kFontFamily[] = "sans-serif";
 
-struct SurfaceDeleter {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-struct ContextDeleter {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
-using Context = std::unique_ptr<cairo_t, ContextDeleter>;
+using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
+using Context = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
 
 cairo_status_t Append(void* closure, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
@@ -126,12 +120,12 @@ void Finish(Surface surface, Context context) {
 
 std::string PdfBytes(const std::vector<Drawing>& pages, const std::string& title) {
   std::string bytes;
-  Surface surface(cairo_pdf_surface_create_for_stream(Append, &bytes, 1, 1));
+  Surface surface(cairo_pdf_surface_create_for_stream(Append, &bytes, 1, 1), cairo_surface_destroy);
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "velamap");
   // By default, cairo writes the current time.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-  Context context(cairo_create(surface.get()));
+  Context context(cairo_create(surface.get()), cairo_destroy);
   UseExactText(context.get());
   for (const Drawing& page : pages) {
     cairo_pdf_surface_set_size(surface.get(), kPointsPerMm * page.width_mm,
@@ -149,9 +143,10 @@ std::string PdfBytes(const std::vector<Drawing>& pages, const std::string& title
 std::string SvgText(const Drawing& drawing) {
   std::string text;
   Surface surface(
-      cairo_svg_surface_create_for_stream(Append, &text, drawing.width_mm, drawing.height_mm));
+      cairo_svg_surface_create_for_stream(Append, &text, drawing.width_mm, drawing.height_mm),
+      cairo_surface_destroy);
   cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_MM);
-  Context context(cairo_create(surface.get()));
+  Context context(cairo_create(surface.get()), cairo_destroy);
   UseExactText(context.get());
   Draw(context.get(), drawing);
   Finish(std::move(surface), std::move(context));

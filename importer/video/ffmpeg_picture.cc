@@ -11,6 +11,7 @@ extern "C" {
 }
 
 #include "importer/video/video_picture.h"
+#include "importer/video/video_stream.h"
 
 namespace velamap {
 namespace {
@@ -58,12 +59,9 @@ cv::Mat DecodeWithFfmpeg(const std::vector<std::uint8_t>& bytes) {
   av_log_set_level(AV_LOG_QUIET);  // it would print its own lines about a broken file
   const AVCodec* decoder = FindDecoder(bytes);
   if (decoder == nullptr || bytes.size() > std::numeric_limits<int>::max()) return {};
-  const auto codec = std::unique_ptr<AVCodecContext, void (*)(AVCodecContext*)>(
-      avcodec_alloc_context3(decoder), [](AVCodecContext* owned) { avcodec_free_context(&owned); });
-  const auto packet = std::unique_ptr<AVPacket, void (*)(AVPacket*)>(
-      av_packet_alloc(), [](AVPacket* owned) { av_packet_free(&owned); });
-  const auto frame = std::unique_ptr<AVFrame, void (*)(AVFrame*)>(
-      av_frame_alloc(), [](AVFrame* owned) { av_frame_free(&owned); });
+  const std::unique_ptr<AVCodecContext, FfmpegFreer> codec(avcodec_alloc_context3(decoder));
+  const std::unique_ptr<AVPacket, FfmpegFreer> packet(av_packet_alloc());
+  const std::unique_ptr<AVFrame, FfmpegFreer> frame(av_frame_alloc());
   if (codec == nullptr || packet == nullptr || frame == nullptr ||
       av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) {
     throw std::bad_alloc();

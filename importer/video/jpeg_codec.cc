@@ -13,13 +13,6 @@ namespace {
 
 using Codec = std::unique_ptr<void, int (*)(tjhandle)>;
 
-struct EncodedBytes {
-  std::unique_ptr<unsigned char, void (*)(unsigned char*)> data{nullptr, tjFree};
-  unsigned long size = 0;
-
-  std::string Text() const { return {reinterpret_cast<const char*>(data.get()), size}; }
-};
-
 Codec MakeCodec(tjhandle handle) {
   VELAMAP_CHECK(handle != nullptr);
   return {handle, tjDestroy};
@@ -30,11 +23,11 @@ template <typename Compress>
 std::string Encode(const Compress& compress) {
   const Codec encoder = MakeCodec(tjInitCompress());
   unsigned char* data = nullptr;
-  EncodedBytes bytes;
-  const int failed = compress(encoder.get(), &data, &bytes.size);
-  bytes.data.reset(data);
+  unsigned long size = 0;
+  const int failed = compress(encoder.get(), &data, &size);
+  const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(data, tjFree);
   VELAMAP_CHECK(failed == 0);
-  return bytes.Text();
+  return {reinterpret_cast<const char*>(data), size};
 }
 
 // What libjpeg-turbo says about data that remain before the end-of-image marker. It gives the first

@@ -10,11 +10,6 @@
 namespace velamap {
 namespace {
 
-struct Unref {
-  void operator()(ExifData* data) const { exif_data_unref(data); }
-};
-using ExifPointer = std::unique_ptr<ExifData, Unref>;
-
 // Nothing where the tag is missing, is no number, or is not positive.
 std::optional<double> PositiveNumber(ExifData* data, ExifIfd directory, ExifTag tag) {
   const ExifEntry* entry = exif_content_get_entry(data->ifd[directory], tag);
@@ -62,7 +57,8 @@ PictureMetadata ReadPictureMetadata(const std::string& path) {
   // No real lens is outside; a damaged tag may be.
   constexpr double kMinFocal = 0.1, kMaxFocal = 100.0;
   PictureMetadata metadata;
-  const ExifPointer data(exif_data_new_from_file(path.c_str()));
+  const std::unique_ptr<ExifData, void (*)(ExifData*)> data(exif_data_new_from_file(path.c_str()),
+                                                            exif_data_unref);
   if (!data) return metadata;
   metadata.quarter_turns =
       QuarterTurns(PositiveNumber(data.get(), EXIF_IFD_0, EXIF_TAG_ORIENTATION).value_or(1.0));
