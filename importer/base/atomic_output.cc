@@ -112,6 +112,30 @@ void WriteAndRename(const fs::path& path, bool is_synced,
   }
 }
 
+// Messages name `from` if that cannot be read, and else `shown_to`.
+void CopyFile(const fs::path& from, const fs::path& to, const fs::path& shown_to) {
+  OpenFile source(from, O_RDONLY | O_NONBLOCK);  // waits for no writer of a pipe
+  struct stat status {};
+  if (source.number() < 0 || fstat(source.number(), &status) != 0) ThrowCannotRead(from, errno);
+  if (!S_ISREG(status.st_mode)) ThrowCannotRead(from, ENOTSUP);
+  OpenFile copy(to, O_WRONLY | O_CREAT | O_TRUNC);
+  if (copy.number() < 0) ThrowCannotWrite(shown_to, std::strerror(errno));
+  if (ioctl(copy.number(), FICLONE, source.number()) != 0) {
+    // std::filesystem::copy_file calls a full disk an input/output error.
+    std::vector<char> buffer(1 << 20);
+    ssize_t size = 0;
+    while ((size = read(source.number(), buffer.data(), buffer.size())) != 0) {
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) ThrowCannotRead(from, errno);
+      if (!WriteAll(copy.number(), buffer.data(), static_cast<std::size_t>(size))) {
+        ThrowCannotWrite(shown_to, std::strerror(errno));
+      }
+    }
+  }
+  fchmod(copy.number(), status.st_mode & 0777);  // some file systems know no such rights
+  if (!copy.Close()) ThrowCannotWrite(shown_to, std::strerror(errno));
+}
+
 void WriteRecords(const fs::path& folder) {
   for (const fs::path& entry : FolderEntries(folder)) {
     if (IsFolder(entry)) WriteRecords(entry);
@@ -190,29 +214,6 @@ void WriteFileAtomicallyUnsynced(const fs::path& path,
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   WriteStream(path, path, write);
   Sync(path, fsync);
-}
-
-void CopyFile(const fs::path& from, const fs::path& to, const fs::path& shown_to) {
-  OpenFile source(from, O_RDONLY | O_NONBLOCK);  // waits for no writer of a pipe
-  struct stat status {};
-  if (source.number() < 0 || fstat(source.number(), &status) != 0) ThrowCannotRead(from, errno);
-  if (!S_ISREG(status.st_mode)) ThrowCannotRead(from, ENOTSUP);
-  OpenFile copy(to, O_WRONLY | O_CREAT | O_TRUNC);
-  if (copy.number() < 0) ThrowCannotWrite(shown_to, std::strerror(errno));
-  if (ioctl(copy.number(), FICLONE, source.number()) != 0) {
-    // std::filesystem::copy_file calls a full disk an input/output error.
-    std::vector<char> buffer(1 << 20);
-    ssize_t size = 0;
-    while ((size = read(source.number(), buffer.data(), buffer.size())) != 0) {
-      if (size < 0 && errno == EINTR) continue;
-      if (size < 0) ThrowCannotRead(from, errno);
-      if (!WriteAll(copy.number(), buffer.data(), static_cast<std::size_t>(size))) {
-        ThrowCannotWrite(shown_to, std::strerror(errno));
-      }
-    }
-  }
-  fchmod(copy.number(), status.st_mode & 0777);  // some file systems know no such rights
-  if (!copy.Close()) ThrowCannotWrite(shown_to, std::strerror(errno));
 }
 
 void CopyFile(const fs::path& from, const fs::path& to) { CopyFile(from, to, to); }

@@ -48,11 +48,8 @@ void WriteFileAtomicallyUnsynced(const std::filesystem::path& path,
 void WriteFile(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
 // Copies a file; what `to` held is replaced. The copy takes no space where the file system can
-// share blocks. The message names `from` if that cannot be read, and else `shown_to`, which is `to`
-// unless it is given.
+// share blocks. Throws InputError that names the file which cannot be read or written.
 void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
-void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to,
-              const std::filesystem::path& shown_to);
 
 // Copies a file atomically, replacing `to`; later edits of one file do not change the other.
 // Creates the missing parents of `to`. Throws InputError as CopyFile() does.

@@ -30,6 +30,16 @@ const void* MemberOf(const OptionTarget& target) {
   return std::visit(Visitor{}, target);
 }
 
+// "a, b or c".
+std::string JoinChoices(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += i == 0 ? "" : i + 1 == names.size() ? " or " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
 }  // namespace
 
 Option PathOption(const std::string& name, PathUse use, std::string* path,
@@ -79,15 +89,6 @@ std::string OptionName(const OptionGroup& group, const void* member) {
 
 void WarnAboutOldName(const std::string& given, const std::string& name) {
   LogWarning("{}: an old name; write {}", given, name);
-}
-
-std::string JoinChoices(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += i == 0 ? "" : i + 1 == names.size() ? " or " : ", ";
-    text += names[i];
-  }
-  return text;
 }
 
 std::size_t FindChoice(const std::string& text, const std::vector<std::string>& names,

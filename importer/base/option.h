@@ -128,9 +128,6 @@ void WarnAboutOldName(const std::string& given, const std::string& name);
 std::size_t FindChoice(const std::string& text, const std::vector<std::string>& names,
                        const std::string& option);
 
-// "a, b or c".
-std::string JoinChoices(const std::vector<std::string>& names);
-
 // The values of an option that takes one of a few names, in the order in which --help lists them.
 template <typename Value>
 using Choices = std::vector<std::pair<Value, std::string>>;

@@ -36,8 +36,7 @@ double NoiseOf(const FormationState& state, bool at_outline_corners) {
   return NoiseOf(residuals);
 }
 
-}  // namespace
-
+// `formation` with the parameters of the vector.
 ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
   formation.gamma = std::exp(p[0]);
   formation.s_amplitude = p[1];
@@ -47,6 +46,8 @@ ImageFormationParameters With(const FormationVector& p, ImageFormationParameters
   formation.edge_shift_blurs = p[kEdgeShift];
   return formation;
 }
+
+}  // namespace
 
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
                           const ImageFormationParameters& formation, int num_threads) {

@@ -19,10 +19,6 @@ constexpr int kInkSpread = 4, kEdgeShift = 5;
 constexpr double kMaxEdgeShift = 1.0;  // blur sigmas, either way
 using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
 
-// `formation` with the parameters of the vector.
-ImageFormationParameters With(const FormationVector& parameters,
-                              ImageFormationParameters formation);
-
 // The parameters that all samples share, and the samples fitted with them.
 struct FormationState {
   FormationVector parameters;

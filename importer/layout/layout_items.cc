@@ -88,6 +88,15 @@ ClothEdge ReadSideEdge(const YamlItem& item, const LayoutPart& part) {
   return edge;
 }
 
+int ReadMarkerId(const YamlItem& item) {
+  int id = -1;
+  if (!ParseMarkerId(item.Text(), &id)) {
+    item.Fail(fmt::format("'{}' is not a marker id; expected a whole number from 0 to {}",
+                          item.Text(), kMaxMarkerId));
+  }
+  return id;
+}
+
 FrameChoice ReadFrameMarkers(const YamlItem& map) {
   FrameChoice frame;
   frame.kind = FrameKind::kMarkers;
@@ -103,15 +112,6 @@ FrameChoice ReadFrameMarkers(const YamlItem& map) {
 }
 
 }  // namespace
-
-int ReadMarkerId(const YamlItem& item) {
-  int id = -1;
-  if (!ParseMarkerId(item.Text(), &id)) {
-    item.Fail(fmt::format("'{}' is not a marker id; expected a whole number from 0 to {}",
-                          item.Text(), kMaxMarkerId));
-  }
-  return id;
-}
 
 double ReadMetres(const YamlItem& item) {
   double length_m = 0.0;

@@ -12,7 +12,6 @@
 
 namespace velamap {
 
-int ReadMarkerId(const YamlItem& item);
 double ReadMetres(const YamlItem& item);
 
 // Reads the edges of `part`, whose lines have been read already.

@@ -23,6 +23,12 @@ int LineIndentedByTab(const std::string& text, int last_line) {
   return -1;
 }
 
+[[noreturn]] void FailYaml(const std::string& path, const YAML::Mark& mark,
+                           const std::string& message) {
+  if (mark.is_null()) throw InputError(fmt::format("{}: {}", path, message));
+  throw InputError(fmt::format("{}:{}: {}", path, mark.line + 1, message));
+}
+
 }  // namespace
 
 YAML::Node LoadYaml(const std::string& path, const std::string& text) {
@@ -43,11 +49,6 @@ YAML::Node LoadYaml(const std::string& path, const std::string& text) {
                                     : "write 'key: value' with a space after the colon, and indent "
                                       "the keys of one level by the same number of spaces"));
   }
-}
-
-void FailYaml(const std::string& path, const YAML::Mark& mark, const std::string& message) {
-  if (mark.is_null()) throw InputError(fmt::format("{}: {}", path, message));
-  throw InputError(fmt::format("{}:{}: {}", path, mark.line + 1, message));
 }
 
 void YamlItem::Fail(const std::string& message) const {

@@ -11,9 +11,6 @@
 
 namespace velamap {
 
-[[noreturn]] void FailYaml(const std::string& path, const YAML::Mark& mark,
-                           const std::string& message);
-
 // Parses `text`, the content of the file. The error says what is usually wrong where the parser
 // gives up: a tab, an open bracket, or the indentation.
 YAML::Node LoadYaml(const std::string& path, const std::string& text);
