@@ -56,11 +56,7 @@ std::vector<cv::Rect> LocateExpected(const FrameSearch& search, std::vector<Mark
   std::vector<cv::Rect> unclear;
   if (!search.expect) return unclear;
   for (const auto& [quad, reach_px] : search.expect(*quads)) {
-    const Box box = BoundingBox(quad.corners_px);
-    if (!FitsIn(box, search.image_size, reach_px)) continue;
-    if (!AddLocated(search, quad.marker_id, quad.corners_px, reach_px, quads)) {
-      unclear.push_back(RegionAround(box, search.image_size, reach_px));
-    }
+    LocateOrAddRegion(search, quad.marker_id, {quad.corners_px, reach_px}, quads, &unclear);
   }
   return unclear;
 }
