@@ -33,11 +33,6 @@ CREATE TABLE image_formation (
     inset_sigma_px REAL NOT NULL);
 )";
 
-constexpr char kColumns[] =
-    "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
-    " edge_shift_blurs, outline_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells,"
-    " quiet_zone_sigma_cells, num_samples, noise_gray, inset_sigma_px";
-
 }  // namespace
 
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database) {
@@ -45,9 +40,7 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   database->exec("DROP TABLE IF EXISTS image_formation");
   database->exec(kFormationSchema);
   SQLite::Statement insert(
-      *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-                             " ?, ?, ?, ?, ?)",
-                             kColumns));
+      *database, "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
                found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.edge_shift_blurs,

@@ -131,10 +131,7 @@ TrackingState StateOf(const RowReader& row) {
 
 void WriteTracking(const TrackingState& state, SQLite::Database* database) {
   database->exec(kTrackingSchema);
-  SQLite::Statement insert(*database,
-                           "INSERT INTO marker_tracking(first_frame, frame_step, last_frame,"
-                           " num_frames, num_damaged, tracked_frame, has_new, inflow_px)"
-                           " VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement insert(*database, "INSERT INTO marker_tracking VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SQLite::bind(insert, state.first_frame, state.frame_step, state.last_frame, state.num_frames,
                state.num_damaged, state.tracks.frame_number, state.tracks.has_new ? 1 : 0);
   BindBlob(insert, 8,
