@@ -63,8 +63,8 @@ Rigid3 EstimateRigid3(const std::vector<Eigen::Vector3d>& x_in_a,
 }
 
 Sim3 EstimateSim3(const std::vector<Eigen::Vector3d>& x_in_a,
-                  const std::vector<Eigen::Vector3d>& x_in_b, const std::vector<double>& weights) {
-  const Moments moments = ComputeMoments(x_in_a, x_in_b, weights);
+                  const std::vector<Eigen::Vector3d>& x_in_b) {
+  const Moments moments = ComputeMoments(x_in_a, x_in_b, {});
   VELAMAP_CHECK(moments.variance_a > 0);
   const RotationAndTrace solution = SolveRotation(moments.covariance_ba);
   Sim3 b_from_a;
@@ -74,10 +74,11 @@ Sim3 EstimateSim3(const std::vector<Eigen::Vector3d>& x_in_a,
   return b_from_a;
 }
 
-bool HasSpread(const std::vector<Eigen::Vector3d>& points, double min_ratio) {
+bool HasSpread(const std::vector<Eigen::Vector3d>& points) {
+  constexpr double kMinRatio = 0.05;
   if (points.size() < 3) return false;
   const Eigen::Vector3d sums = ComputePrincipalAxes(points).sums_of_squares;
-  return sums[1] >= min_ratio * min_ratio * sums[2] && sums[2] > 0;
+  return sums[1] >= kMinRatio * kMinRatio * sums[2] && sums[2] > 0;
 }
 
 }  // namespace velamap

@@ -21,13 +21,12 @@ Rigid3 EstimateRigid3(const std::vector<Eigen::Vector3d>& x_in_a,
                       const std::vector<Eigen::Vector3d>& x_in_b,
                       const std::vector<double>& weights = {});
 
-// The same with a scale: minimizes sum_i w_i |b_from_a * a_i - b_i|^2 over similarities.
+// The same over similarities, without weights.
 Sim3 EstimateSim3(const std::vector<Eigen::Vector3d>& x_in_a,
-                  const std::vector<Eigen::Vector3d>& x_in_b,
-                  const std::vector<double>& weights = {});
+                  const std::vector<Eigen::Vector3d>& x_in_b);
 
 // Whether the points span a plane well enough to fix a rotation: the second principal standard
-// deviation is at least `min_ratio` of the first.
-bool HasSpread(const std::vector<Eigen::Vector3d>& points, double min_ratio = 0.05);
+// deviation is at least a twentieth of the first.
+bool HasSpread(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace velamap
