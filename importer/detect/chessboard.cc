@@ -180,10 +180,7 @@ std::string ChessboardName(const Chessboard& board) {
 }
 
 FrameDetections DetectChessboard(const Chessboard& board, const Frame& frame) {
-  FrameDetections detections;
-  detections.image_name = frame.image_name;
-  detections.frame_number = frame.frame_number;
-  detections.time_s = frame.time_s;
+  FrameDetections detections{frame.image_name, frame.frame_number, frame.time_s, {}, {}};
   CornerGrid grid{board.num_columns, board.num_rows, {}};
   if (!cv::findChessboardCornersSB(frame.gray, {board.num_columns, board.num_rows}, grid.corners_px,
                                    cv::CALIB_CB_NORMALIZE_IMAGE)) {

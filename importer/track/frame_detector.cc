@@ -226,10 +226,7 @@ std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, con
 
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
                               const cv::Mat& gray, const std::vector<MarkerQuad>& quads) {
-  FrameDetections detections;
-  detections.image_name = frame.image_name;
-  detections.frame_number = frame.frame_number;
-  detections.time_s = frame.time_s;
+  FrameDetections detections{frame.image_name, frame.frame_number, frame.time_s, {}, {}};
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
        RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
