@@ -206,12 +206,7 @@ std::vector<MarkerQuad> SearchRegions(const Search& search, const std::vector<cv
 Search MakeSearch(const cv::Mat& gray, const Dictionary& dictionary, int border_bits,
                   const ArucoDetectionOptions& options) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
-  Search search{gray, dictionary, border_bits, options};
-  if (options.inverted) {
-    search.dark_on_light = cv::Mat();  // a new one, so that the image of the caller does not change
-    cv::bitwise_not(gray, search.dark_on_light);
-  }
-  return search;
+  return {options.inverted ? cv::Mat(~gray) : gray, dictionary, border_bits, options};
 }
 
 }  // namespace

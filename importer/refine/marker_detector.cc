@@ -44,12 +44,7 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const ArucoDetectionOptions& options,
                                            const ImageFormation& formation) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
-  cv::Mat dark_on_light;  // a new one, so that the image of the caller does not change
-  if (options.inverted) {
-    cv::bitwise_not(gray, dark_on_light);
-  } else {
-    dark_on_light = gray;
-  }
+  const cv::Mat dark_on_light = options.inverted ? cv::Mat(~gray) : gray;
   std::vector<MarkerDetection> detections;
   int num_fallbacks = 0;
   for (const MarkerQuad& found : quads) {
