@@ -37,8 +37,7 @@ struct SampleShift {
 // The derivative of grey values with respect to the distance of all corners from the centre, along
 // both sides.
 double ByCornersOutwards(const PatternPixels& pixels, const QuadCorners& corners_px) {
-  const Eigen::Vector2d center =
-      0.25 * (corners_px[0] + corners_px[1] + corners_px[2] + corners_px[3]);
+  const Eigen::Vector2d center = QuadCenter(corners_px);
   const double half_side = 0.5 * QuadMeanSide(corners_px);
   double derivative = 0.0;
   for (std::size_t i = 0; i < kNumCorners; ++i) {

@@ -186,7 +186,6 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
   if (pixels.count <= P::kCount) return false;
   minimum->equations.Reserve(pixels.groups.size());
   LeastSquaresOptions options;
-  options.max_iterations = 20;
   options.initial_damping = 1e-3;
   options.min_step = tolerance_px;
   options.min_step_for_new_hessian = 0.1;

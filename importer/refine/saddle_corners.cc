@@ -15,8 +15,6 @@
 namespace velamap {
 namespace {
 
-using Quad = QuadCorners;
-
 constexpr double kMinCellPx = 4.0;
 // The touching square is as dark as the marker to within this fraction of the contrast. A quiet
 // zone into which dark squares around it blur stays lighter.
@@ -57,7 +55,7 @@ bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner,
 
 }  // namespace
 
-int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, Quad* corners_px) {
+int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, QuadCorners* corners_px) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols &&
                 cells.rows > 0);
   const int num_cells = cells.rows;

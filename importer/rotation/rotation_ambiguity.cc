@@ -82,11 +82,9 @@ CodeSymmetries FindCodeSymmetries(const Dictionary& dictionary) {
   for (int id = 0; id < codes.rows; ++id) {
     const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(codes.rowRange(id, id + 1),
                                                                     dictionary.aruco->markerSize);
-    cv::Mat turned = bits;
+    cv::Mat turned = bits.clone();
     for (int turn = 1; turn < kNumCorners; ++turn) {
-      cv::Mat next;
-      cv::rotate(turned, next, cv::ROTATE_90_CLOCKWISE);
-      turned = next;
+      cv::rotate(turned, turned, cv::ROTATE_90_CLOCKWISE);
       if (cv::countNonZero(turned != bits) == 0) symmetries[id].push_back(turn);
     }
   }
