@@ -1,7 +1,6 @@
 #include "importer/import_anew.h"
 
 #include <fstream>
-#include <optional>
 #include <ostream>
 
 #include <fmt/format.h>

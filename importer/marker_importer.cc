@@ -26,7 +26,6 @@
 #include "importer/import_run.h"
 #include "importer/track/frame_detector.h"
 #include "importer/video/frame_source.h"
-#include "importer/video/source_file.h"
 
 namespace velamap {
 namespace {

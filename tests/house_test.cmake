@@ -8,13 +8,12 @@ set(MAX_FILES_IN_FOLDER 25)
 set(failures "")
 set(num_files 0)
 
-# Only the database's files know SQL; only the search, the detector and the dictionaries know
-# cv::aruco.
+# Only the database's files know SQL; only the search and the dictionaries know cv::aruco.
 set(SQL_FILES "^importer/database/(colmap_(database|schema)|(camera|image_formation|marker_detections|part|source|tracking)_table)\\.cc$")
 # Only these files call the operations of std::filesystem, because they turn a failure into an input
 # error; elsewhere its exceptions would end the program as a broken invariant.
 set(FILE_SYSTEM_FILES "^importer/base/(files|atomic_output)\\.cc$")
-set(ARUCO_FILES "^importer/(detect/marker_search|refine/marker_detector|layout/dictionary)\\.(h|cc)$")
+set(ARUCO_FILES "^importer/(detect/marker_search|layout/dictionary)\\.(h|cc)$")
 
 set(folders "")
 macro(house_folder folder)
@@ -39,7 +38,7 @@ macro(check_include file folder include)
     fail("${file} includes a test: ${include}")
   endif()
   if("${include}" MATCHES "opencv2/aruco" AND NOT "${file}" MATCHES "${ARUCO_FILES}")
-    fail("${file} includes opencv2/aruco; only search, detector and dictionary may")
+    fail("${file} includes opencv2/aruco; only search and dictionary may")
   endif()
   if("${include}" MATCHES "\"((importer|reconstruct|exporters|workflows)[a-z0-9_/]*)/([a-z0-9_]+)\\.h\"")
     set(other ${CMAKE_MATCH_1})

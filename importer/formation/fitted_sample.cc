@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/pattern_picture.h"
 

@@ -3,8 +3,6 @@
 
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,7 +1,6 @@
 #include "importer/pattern/clipped_pixels.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 
 #include "importer/pattern/pattern_picture.h"

@@ -15,10 +15,8 @@
 
 #pragma once
 
-#include <array>
 #include <optional>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"

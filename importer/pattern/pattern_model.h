@@ -2,8 +2,6 @@
 
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"

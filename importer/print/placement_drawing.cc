@@ -8,8 +8,6 @@
 #include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
-#include "importer/base/ids.h"
-
 namespace velamap {
 namespace {
 

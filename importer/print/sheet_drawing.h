@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include <opencv2/core.hpp>
-
 #include "importer/layout/dictionary.h"
 #include "importer/print/drawing.h"
 #include "importer/print/sheet_plan.h"

@@ -9,10 +9,8 @@
 
 #pragma once
 
-#include <array>
 #include <optional>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"

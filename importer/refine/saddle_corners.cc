@@ -1,6 +1,7 @@
 #include "importer/refine/saddle_corners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 

@@ -7,9 +7,6 @@
 
 #pragma once
 
-#include <array>
-
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"

@@ -1,6 +1,5 @@
 #include "importer/track/frame_detector.h"
 
-#include <cstdint>
 #include <iterator>
 #include <utility>
 #include <vector>

@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "importer/camera/camera.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/geometry/rigid3.h"

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "importer/base/error.h"
 #include "tests/importer/marker_builders.h"
 
 namespace velamap {

@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importer/geometry/units.h"
 #include "tests/importer/marker_builders.h"
 
 namespace velamap {
