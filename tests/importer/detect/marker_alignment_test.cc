@@ -52,7 +52,7 @@ TEST(LocateMarker, FindsAMarkerAFewCellsAway) {
   for (const double side_px : {22.0, 40.0, 90.0}) {
     const MarkerGrid grid = MakeGrid(side_px, 0.0);
     for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-      const double away_px = 0.4 * MeanSide(grid.truth[k]);
+      const double away_px = 0.4 * QuadMeanSide(grid.truth[k]);
       const QuadCorners expected = Moved(grid.truth[k], away_px, -0.7 * away_px);
       const auto located = LocateMarker(grid.image, expected, {grid.cells[k]}, away_px);
       ASSERT_TRUE(located) << side_px << " px, marker " << k;

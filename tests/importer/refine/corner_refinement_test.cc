@@ -14,8 +14,8 @@
 namespace velamap {
 namespace {
 
-using Refiner =
-    std::function<std::optional<RefinedCorners>(const cv::Mat&, const QuadPx&, const cv::Mat&)>;
+using Refiner = std::function<std::optional<RefinedCorners>(const cv::Mat&, const QuadCorners&,
+                                                            const cv::Mat&)>;
 
 struct Quality {
   int num_fitted = 0, num_failed = 0;
@@ -33,7 +33,7 @@ Quality Measure(const MarkerGrid& grid, const Refiner& refine) {
       continue;
     }
     ++quality.num_fitted;
-    quality.bias_px += MeanSide(refined->corners_px) - MeanSide(grid.truth[k]);
+    quality.bias_px += QuadMeanSide(refined->corners_px) - QuadMeanSide(grid.truth[k]);
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       squares += (refined->corners_px[i] - grid.truth[k][i]).squaredNorm();
     }
@@ -46,13 +46,13 @@ Quality Measure(const MarkerGrid& grid, const Refiner& refine) {
 }
 
 Quality MeasureRefineCorners(const MarkerGrid& grid) {
-  return Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+  return Measure(grid, [](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
     return RefineCorners(gray, start, cells);
   });
 }
 
 Quality MeasureSubpix(const MarkerGrid& grid) {
-  return Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+  return Measure(grid, [](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
     RefinedCorners refined;
     refined.corners_px = SubpixCorners(gray, start, cells.rows);
     return std::make_optional(refined);
@@ -125,7 +125,7 @@ TEST(RefineCorners, OutlinesFoundFarInsideSmallMarkersGrow) {
       parameters.quiet_zone_sigma_cells = 0.1;
       const ImageFormation formation(parameters);
       const Quality fitted =
-          Measure(grid, [&](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+          Measure(grid, [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
             return RefineCorners(gray, start, cells, formation);
           });
       EXPECT_LE(fitted.num_failed, fitted.num_fitted / 50);
@@ -136,7 +136,7 @@ TEST(RefineCorners, OutlinesFoundFarInsideSmallMarkersGrow) {
 }
 
 // From the left to the right side of the truth, at these heights (0 top, 1 bottom).
-void DrawRope(const QuadPx& truth, double left, double right, double gray, cv::Mat* image) {
+void DrawRope(const QuadCorners& truth, double left, double right, double gray, cv::Mat* image) {
   constexpr double kBeyond = 0.4;  // sides
   constexpr int kShift = 4;        // bits behind the point of cv::line's coordinates
   const UnitSquareMap map(truth);
@@ -161,7 +161,7 @@ TEST(RefineCorners, RopesMoveNoCorner) {
     options.max_tilt_deg = 40;
     options.rendering.noise_sigma = 2.0;
     MarkerGrid grid = MakeMarkerGrid(options);
-    for (const QuadPx& truth : grid.truth) {
+    for (const QuadCorners& truth : grid.truth) {
       DrawRope(truth, rope.left, rope.right, 70, &grid.image);
     }
     const Quality fitted = MeasureRefineCorners(grid);
@@ -189,7 +189,7 @@ TEST(RefineCorners, MarkersAtTheBorderOfThePictureAreAsGoodAsOthers) {
   const MarkerGrid grid = MakeMarkerGrid(options);
   const ImageFormation formation(options.rendering.camera);
   const Quality fitted = Measure(grid,
-                                 [&](const cv::Mat& gray, const QuadPx& start,
+                                 [&](const cv::Mat& gray, const QuadCorners& start,
                                      const cv::Mat& cells) -> std::optional<RefinedCorners> {
                                    constexpr double kReachPx = 3.0;
                                    const Box box = BoundingBox(start);
@@ -198,7 +198,7 @@ TEST(RefineCorners, MarkersAtTheBorderOfThePictureAreAsGoodAsOthers) {
                                    const cv::Mat cut =
                                        gray(cv::Rect(low, cv::Point(gray.cols, gray.rows)));
                                    const Eigen::Vector2d shift_px(low.x, low.y);
-                                   QuadPx cut_start = start;
+                                   QuadCorners cut_start = start;
                                    for (Eigen::Vector2d& corner : cut_start) corner -= shift_px;
                                    auto refined = RefineCorners(cut, cut_start, cells, formation);
                                    if (!refined) return std::nullopt;
@@ -223,7 +223,7 @@ TEST(RefineCorners, SidesAloneAreFittedToLight) {
   MarkerGrid grid = MakeMarkerGrid(options);
   std::rotate(grid.cells.begin(), grid.cells.begin() + 1, grid.cells.end());
   const auto measure = [&](const ImageFormation& formation) {
-    return Measure(grid, [&](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+    return Measure(grid, [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
       EXPECT_FALSE(FitPattern(gray, start, cells, formation));
       return RefineCorners(gray, start, cells, formation);
     });
@@ -241,7 +241,7 @@ TEST(RefineCornersBySides, SidesBentByTheLensMeetInTheirCorners) {
   options.max_tilt_deg = 30;
   const MarkerGrid grid = MakeMarkerGrid(options);
   const Quality fitted =
-      Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+      Measure(grid, [](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
         return RefineCornersBySides(gray, start, cells.rows);
       });
   EXPECT_EQ(fitted.num_failed, 0);
@@ -253,15 +253,15 @@ TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
   const MarkerGrid small = MakeMarkerGrid(Chequered(20, 0.7));
   const MarkerGrid large = MakeMarkerGrid(Chequered(60, 0.7));
   for (const MarkerGrid* grid : {&small, &large}) {
-    const QuadPx& start = grid->truth[0];
+    const QuadCorners& start = grid->truth[0];
     const cv::Mat& cells = grid->cells[0];
     ASSERT_TRUE(RefineCorners(grid->image, start, cells));
     const cv::Mat flat(grid->image.size(), CV_8UC1, cv::Scalar(100));
     EXPECT_FALSE(RefineCorners(flat, start, cells));
     EXPECT_FALSE(RefineCorners(255 - grid->image, start, cells));
-    QuadPx elsewhere = start, outside = start;
+    QuadCorners elsewhere = start, outside = start;
     for (std::size_t i = 0; i < kNumCorners; ++i) {
-      elsewhere[i].x() += 0.5 * MeanSide(start);
+      elsewhere[i].x() += 0.5 * QuadMeanSide(start);
       outside[i].x() -= start[0].x() + 100;
     }
     EXPECT_FALSE(RefineCorners(grid->image, elsewhere, cells));

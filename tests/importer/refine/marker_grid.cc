@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <Eigen/Geometry>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/geometry/quad.h"
 #include "importer/geometry/units.h"
+#include "importer/layout/dictionary.h"
 
 namespace velamap {
 namespace {
@@ -64,10 +64,8 @@ MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options) {
   MarkerGrid grid;
   grid.image = RenderMarkers(options.camera, markers, dictionary, 1, options.rendering);
   for (const PlacedMarkerInCam& marker : markers) {
-    grid.cells.emplace_back();
-    cv::aruco::drawMarker(dictionary.aruco, marker.marker_id, dictionary.aruco->markerSize + 2,
-                          grid.cells.back(), 1);
-    QuadPx truth, start;
+    grid.cells.push_back(MarkerCells(dictionary, marker.marker_id, 1));
+    QuadCorners truth, start;
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       truth[i] =
           *ImageFromCam(options.camera, marker.corners_in_cam[i]) - Eigen::Vector2d::Constant(0.5);
@@ -79,18 +77,16 @@ MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options) {
   return grid;
 }
 
-double MeanSide(const QuadPx& quad) { return QuadMeanSide(quad); }
-
-QuadPx SubpixCorners(const cv::Mat& gray, const QuadPx& start, int num_cells) {
+QuadCorners SubpixCorners(const cv::Mat& gray, const QuadCorners& start, int num_cells) {
   const int half_window =
-      std::clamp(static_cast<int>(std::lround(0.4 * MeanSide(start) / num_cells)), 1, 5);
+      std::clamp(static_cast<int>(std::lround(0.4 * QuadMeanSide(start) / num_cells)), 1, 5);
   std::vector<cv::Point2f> points;
   for (const auto& x : start) {
     points.emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()));
   }
   cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
                    cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
-  QuadPx refined;
+  QuadCorners refined;
   for (std::size_t i = 0; i < kNumCorners; ++i) refined[i] = {points[i].x, points[i].y};
   return refined;
 }

@@ -2,19 +2,15 @@
 
 #pragma once
 
-#include <random>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/layout/dictionary.h"
+#include "importer/geometry/quad.h"
 #include "tests/support/render/marker_renderer.h"
 
 namespace velamap {
-
-using QuadPx = std::array<Eigen::Vector2d, kNumCorners>;  // OpenCV's pixel frame
 
 struct MarkerGridOptions {
   std::string dictionary = "DICT_5X5_50";
@@ -28,7 +24,7 @@ struct MarkerGridOptions {
 struct MarkerGrid {
   cv::Mat image;
   std::vector<cv::Mat> cells;  // of each marker, as FitPattern wants them
-  std::vector<QuadPx> truth, starts;
+  std::vector<QuadCorners> truth, starts;
 };
 
 // A chequered board: one cell of quiet zone, then black.
@@ -37,10 +33,8 @@ MarkerGridOptions Chequered(double side_px, double blur_px);
 // Markers in random attitudes on a grid, apart from each other.
 MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options);
 
-double MeanSide(const QuadPx& quad);
-
 // cv::cornerSubPix as its users would call it: with a window of less than half a cell, so that it
 // holds no other corner. `num_cells`: along a side, with the border.
-QuadPx SubpixCorners(const cv::Mat& gray, const QuadPx& start, int num_cells);
+QuadCorners SubpixCorners(const cv::Mat& gray, const QuadCorners& start, int num_cells);
 
 }  // namespace velamap

@@ -105,7 +105,7 @@ MarkerGrid MakeBentGrid(const CornerCase& parameters, std::uint32_t seed) {
   for (const ClipMarker& marker : scene.markers) {
     const auto corners = ProjectCorners(scene, marker, 0);
     if (!corners) continue;
-    QuadPx truth;
+    QuadCorners truth;
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       truth[i] = (*corners)[i] - Eigen::Vector2d::Constant(0.5);
     }
@@ -120,12 +120,12 @@ MarkerGrid MakeBentGrid(const CornerCase& parameters, std::uint32_t seed) {
 double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& parameters) {
   using P = PatternParameters;
   constexpr int kNumKnown = P::kGradientX;  // corners, blur and grey levels are unknown
-  const QuadPx& truth = grid.truth[k];
+  const QuadCorners& truth = grid.truth[k];
   const UnitSquareMap map(truth);
   PatternModel model;
   model.num_cells = grid.cells[k].rows;
   model.center_px = map.ToImage(0.5, 0.5);
-  model.diagonal_px = std::sqrt(2.0) * MeanSide(truth);
+  model.diagonal_px = std::sqrt(2.0) * QuadMeanSide(truth);
   const RenderOptions rendering;
   P::Vector p = P::Vector::Zero();
   for (int i = 0; i < kNumCorners; ++i) {
@@ -168,7 +168,7 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
 // Sums errors of corners along and across the diagonals, so that a common inset can be taken out.
 class ErrorSums {
  public:
-  void Add(const QuadPx& found, const QuadPx& truth) {
+  void Add(const QuadCorners& found, const QuadCorners& truth) {
     const Eigen::Vector2d middle = 0.25 * (truth[0] + truth[1] + truth[2] + truth[3]);
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       const Eigen::Vector2d error = found[i] - truth[i];
@@ -176,7 +176,7 @@ class ErrorSums {
       squares_ += error.squaredNorm();
       ++count_;
     }
-    const double side_error = MeanSide(found) - MeanSide(truth);
+    const double side_error = QuadMeanSide(found) - QuadMeanSide(truth);
     side_errors_ += side_error;
     squared_side_errors_ += side_error * side_error;
   }
