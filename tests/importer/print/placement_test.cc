@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "importer/geometry/quad.h"
 #include "tests/support/error_matchers.h"
 
 namespace velamap {
@@ -19,10 +20,6 @@ SailPlacementOptions Sail(double luff_m, double foot_m, double leech_m) {
   options.foot_m = foot_m;
   options.leech_m = leech_m;
   return options;
-}
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 // Distance to the nearest edge; negative outside.

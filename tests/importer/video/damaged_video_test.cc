@@ -40,6 +40,14 @@ void WriteSpoilt(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
+void EncodeClip(const std::string& path, const std::string& encoding) {
+  const std::string command = fmt::format(
+      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate=25 -frames:v {} "
+      "-vf hue=s=0,format=yuv420p -threads 1 -g {} {} '{}'",
+      kNumEncoded, kKeyDistance, encoding, path);
+  ASSERT_EQ(std::system(command.c_str()), 0) << command << ": is ffmpeg installed?";
+}
+
 struct DecodedFrame {
   bool is_whole = true;
   cv::Mat gray;
@@ -57,13 +65,7 @@ std::map<long, DecodedFrame> DecodeAll(const std::string& path, int num_threads)
 
 class DamagedVideoTest : public testing::TestWithParam<SpoiltClip> {
  protected:
-  void SetUp() override {
-    const std::string command = fmt::format(
-        "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate=25 -frames:v {} "
-        "-vf hue=s=0,format=yuv420p -threads 1 -g {} {} '{}'",
-        kNumEncoded, kKeyDistance, GetParam().encoding, path_);
-    ASSERT_EQ(std::system(command.c_str()), 0) << command << ": is ffmpeg installed?";
-  }
+  void SetUp() override { EncodeClip(path_, GetParam().encoding); }
 
   TempDir dir_;
   std::string path_ = dir_ / GetParam().file_name;
@@ -109,11 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Clips, DamagedVideoTest,
 TEST(DamagedVideo, FramesAreReadAndNotUsed) {
   const TempDir dir;
   const std::string path = dir / "clip.mp4";
-  const std::string command =
-      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate=25 -frames:v 75 -vf "
-      "hue=s=0,format=yuv420p -threads 1 -c:v libx264 -g 12 -bf 3 -crf 10 " +
-      path;
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  ASSERT_NO_FATAL_FAILURE(EncodeClip(path, "-c:v libx264 -bf 3 -crf 10"));
   std::string bytes = SpoiltBytes(path);
   for (std::size_t i = 0; i < 400; ++i) bytes[bytes.size() * 2 / 5 + i] ^= 0x5a;
   WriteSpoilt(path, bytes);
@@ -133,11 +131,7 @@ TEST(DamagedVideo, FramesAreReadAndNotUsed) {
 TEST(DamagedVideo, ATruncatedOneIsUsedToItsEnd) {
   const TempDir dir;
   const std::string path = dir / "clip.mp4";
-  const std::string command =
-      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate=25 -frames:v 75 -vf "
-      "hue=s=0,format=yuv420p -threads 1 -c:v libx264 -g 12 -bf 0 -movflags +faststart " +
-      path;
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  ASSERT_NO_FATAL_FAILURE(EncodeClip(path, "-c:v libx264 -bf 0 -movflags +faststart"));
   const std::string bytes = SpoiltBytes(path);
   WriteSpoilt(path, bytes.substr(0, bytes.size() * 2 / 3));
   const std::map<long, DecodedFrame> frames = DecodeAll(path, 2);

@@ -180,14 +180,10 @@ TEST(DecodeImageFile, IsNotFooledByThePreviewOfACutJpeg) {
   cv::imencode(".jpg", PictureOfNoise(80, 60), jpeg);
   std::vector<std::uint8_t> bytes = {0xFF, 0xD8, 0xFF, 0xE1, 0x00, 0x06, 0xFF, 0xD8, 0xFF, 0xD9};
   bytes.insert(bytes.end(), jpeg.begin() + 2, jpeg.end());
-  const auto write = [&](std::size_t size) {
-    std::ofstream(dir / "a.jpg", std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
-  };
   std::string reason;
-  write(bytes.size());
+  WriteBytes(dir / "a.jpg", bytes);
   EXPECT_FALSE(DecodeImageFile(dir / "a.jpg", &reason).empty()) << reason;
-  write(bytes.size() / 2);
+  ShortenFile(dir / "a.jpg", 0.5);
   EXPECT_TRUE(DecodeImageFile(dir / "a.jpg", &reason).empty());
 }
 
@@ -225,8 +221,7 @@ TEST(DecodeImageFile, PicturesAreNotTurnedByTheirMetadata) {
       0xFF, 0xE1, 0x00, 0x22, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
       0,    1,    0x01, 0x12, 0,   3,   0,   0,   0, 1, 0,   6,   0, 0,  0, 0, 0, 0};
   jpeg.insert(jpeg.begin() + 2, exif.begin(), exif.end());
-  std::ofstream(dir / "a.jpg", std::ios::binary)
-      .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
+  WriteBytes(dir / "a.jpg", jpeg);
   EXPECT_EQ(cv::imread(dir / "a.jpg").size(), cv::Size(60, 80)) << "the test's EXIF is not read";
   std::string reason;
   EXPECT_EQ(DecodeImageFile(dir / "a.jpg", &reason).size(), cv::Size(80, 60)) << reason;
