@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -64,6 +66,11 @@ class MarkerImporterTest : public testing::Test {
 
   std::vector<DatabaseImage> ReadImages() const {
     return ColmapDatabase(options_.database_path, ColmapDatabase::Mode::kReadOnly).ReadImages();
+  }
+
+  std::string DatabaseBytes() const {
+    std::ifstream stream(options_.database_path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
   }
 
   TempDir dir_;

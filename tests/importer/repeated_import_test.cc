@@ -1,7 +1,6 @@
 // Imports that are repeated: with more pictures, with other options or with more threads.
 
 #include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -38,15 +37,11 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   for (int i = 0; i < 8; ++i) WritePicture(std::to_string(i) + ".png", i, {1, 2, 3});
   options_.num_threads = 1;
   ImportMarkers(options_);
-  const auto read = [](const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-  };
-  const std::string bytes = read(options_.database_path);
+  const std::string bytes = DatabaseBytes();
   fs::remove(options_.database_path);
   options_.num_threads = 4;
   ImportMarkers(options_);
-  EXPECT_EQ(read(options_.database_path), bytes);
+  EXPECT_EQ(DatabaseBytes(), bytes);
 }
 
 // Markers 5 and 6 are visible in some of the frames only.
@@ -81,10 +76,8 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
     EXPECT_EQ(report.num_markers, 40 * 4 + 30 * 2);
     EXPECT_EQ(report.prior_shape_agreement.num_agreeing, report.prior_shape_agreement.num_known);
     EXPECT_GT(report.prior_shape_agreement.num_agreeing, 40 * 4);
-    std::ifstream stream(options_.database_path, std::ios::binary);
-    const std::string now(std::istreambuf_iterator<char>(stream), {});
-    if (num_threads == 1) bytes = now;
-    EXPECT_EQ(now, bytes) << num_threads;
+    if (num_threads == 1) bytes = DatabaseBytes();
+    EXPECT_EQ(DatabaseBytes(), bytes) << num_threads;
   }
 }
 
@@ -95,8 +88,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
     options_.num_threads = num_threads;
     options_.detection.search = search;
     ImportMarkers(options_);
-    std::ifstream stream(options_.database_path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
+    return DatabaseBytes();
   };
   const std::string bytes = run(1, SearchMode::kTracked);
   for (const int num_threads : {2, 5}) EXPECT_EQ(run(num_threads, SearchMode::kTracked), bytes);

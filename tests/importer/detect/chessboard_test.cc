@@ -33,28 +33,10 @@ Rigid3 Facing(double turn_deg) {
   return {rotation, {0.01, -0.005, 0.45}};
 }
 
-// Errors of the coordinates of the detected corners of a board that is not turned, px.
+// Errors of the coordinates of the detected corners, px, where the columns run along x or back.
 std::vector<double> ErrorsPx(const FrameDetections& detections, const Chessboard& board,
-                             const Camera& camera, const Rigid3& cam_from_board) {
-  std::vector<double> errors;
-  const int blocks = board.num_columns / 2;
-  for (const MarkerDetection& marker : detections.markers) {
-    for (int c = 0; c < kNumCorners; ++c) {
-      const int column = 2 * (marker.marker_id % blocks) + (c == 1 || c == 2);
-      const int row = 2 * (marker.marker_id / blocks) + (c >= 2);
-      const Eigen::Vector2d error_px =
-          marker.corners_in_image_px[static_cast<std::size_t>(c)] -
-          *ImageFromCam(camera, cam_from_board * ChessboardCorner(board, kSquare_m, column, row));
-      errors.insert(errors.end(), {error_px.x(), error_px.y()});
-    }
-  }
-  return errors;
-}
-
-// Errors of the coordinates of the detected corners, in their sigmas, where the first corner of
-// marker 0 is the inner corner (`first_column`, `first_row`) and the columns run along x or back.
-std::vector<double> ErrorsInSigmas(const FrameDetections& detections, const Chessboard& board,
-                                   const Rigid3& cam_from_board, bool is_half_turned) {
+                             const Camera& camera, const Rigid3& cam_from_board,
+                             bool is_half_turned) {
   std::vector<double> errors;
   const int blocks = board.num_columns / 2;
   for (const MarkerDetection& marker : detections.markers) {
@@ -67,14 +49,21 @@ std::vector<double> ErrorsInSigmas(const FrameDetections& detections, const Ches
         column = board.num_columns - 1 - column;
         row = board.num_rows - 1 - row;
       }
-      const Eigen::Vector2d x_px =
-          *ImageFromCam(kCamera, cam_from_board * ChessboardCorner(board, kSquare_m, column, row));
       const Eigen::Vector2d error_px =
-          marker.corners_in_image_px[static_cast<std::size_t>(c)] - x_px;
-      const double sigma_px = marker.corner_sigma_px[static_cast<std::size_t>(c)];
-      errors.push_back(error_px.x() / sigma_px);
-      errors.push_back(error_px.y() / sigma_px);
+          marker.corners_in_image_px[static_cast<std::size_t>(c)] -
+          *ImageFromCam(camera, cam_from_board * ChessboardCorner(board, kSquare_m, column, row));
+      errors.insert(errors.end(), {error_px.x(), error_px.y()});
     }
+  }
+  return errors;
+}
+
+// The same in their sigmas, with kCamera.
+std::vector<double> ErrorsInSigmas(const FrameDetections& detections, const Chessboard& board,
+                                   const Rigid3& cam_from_board, bool is_half_turned) {
+  std::vector<double> errors = ErrorsPx(detections, board, kCamera, cam_from_board, is_half_turned);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    errors[i] /= detections.markers[i / 8].corner_sigma_px[i % 8 / 2];
   }
   return errors;
 }
@@ -106,7 +95,7 @@ TEST(Chessboard, BentEdgesOfLargeSquaresDoNotMoveCorners) {
   const FrameDetections found = DetectChessboard(
       board, FrameOf(RenderBoard(wide, pose, PrintChessboard(board, kSquare_m), {})));
   ASSERT_EQ(static_cast<int>(found.markers.size()), board.NumMarkers());
-  EXPECT_LT(Rms(ErrorsPx(found, board, wide, pose)), 0.05);
+  EXPECT_LT(Rms(ErrorsPx(found, board, wide, pose, false)), 0.05);
 }
 
 TEST(Chessboard, ABoardThatLooksDifferentTurnedKeepsItsFirstCorner) {

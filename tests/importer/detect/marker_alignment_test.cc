@@ -22,12 +22,6 @@ MarkerGrid MakeGrid(double side_px, double start_error_px) {
   return MakeMarkerGrid(options);
 }
 
-double MaxDistance(const QuadCorners& a, const QuadCorners& b) {
-  double max_px = 0.0;
-  for (std::size_t c = 0; c < kNumCorners; ++c) max_px = std::max(max_px, (a[c] - b[c]).norm());
-  return max_px;
-}
-
 QuadCorners Moved(const QuadCorners& quad, double x_px, double y_px) {
   QuadCorners moved = quad;
   for (Eigen::Vector2d& corner : moved) corner += Eigen::Vector2d(x_px, y_px);
@@ -42,7 +36,7 @@ TEST(AlignSides, CornersAreWithinAFractionOfAPixel) {
       const auto aligned = AlignSides(grid.image, grid.starts[k], {grid.cells[k]});
       if (!aligned) continue;
       ++num_aligned;
-      EXPECT_LT(MaxDistance(*aligned, grid.truth[k]), 0.6) << side_px << " px, marker " << k;
+      EXPECT_LT(MaxCornerShift(*aligned, grid.truth[k]), 0.6) << side_px << " px, marker " << k;
     }
     EXPECT_GE(num_aligned, 0.95 * static_cast<double>(grid.truth.size())) << side_px << " px";
   }
@@ -56,7 +50,7 @@ TEST(LocateMarker, FindsAMarkerAFewCellsAway) {
       const QuadCorners expected = Moved(grid.truth[k], away_px, -0.7 * away_px);
       const auto located = LocateMarker(grid.image, expected, {grid.cells[k]}, away_px);
       ASSERT_TRUE(located) << side_px << " px, marker " << k;
-      EXPECT_LT(MaxDistance(*located, grid.truth[k]), 0.6) << side_px << " px, marker " << k;
+      EXPECT_LT(MaxCornerShift(*located, grid.truth[k]), 0.6) << side_px << " px, marker " << k;
     }
   }
 }
@@ -115,7 +109,7 @@ StartDependence CompareStarts(const MarkerGrid& grid) {
     const auto from_start = RefineCorners(grid.image, grid.starts[k], grid.cells[k]);
     if (!from_truth || !from_start) continue;
     ++result.num_compared;
-    result.num_same += MaxDistance(from_truth->corners_px, from_start->corners_px) < kSame_px;
+    result.num_same += MaxCornerShift(from_truth->corners_px, from_start->corners_px) < kSame_px;
     for (std::size_t c = 0; c < kNumCorners; ++c) {
       result.mean_square += (from_truth->corners_px[c] - from_start->corners_px[c]).squaredNorm() /
                             (2 * std::pow(from_truth->sigma_px[c], 2));

@@ -23,14 +23,9 @@ cv::Mat Gray(const cv::Mat& color) {
 double MaxCornerError(const MarkerDetection& marker, const DrawnMarker& drawn) {
   const Eigen::Vector2d top_left(drawn.left, drawn.top);
   const double s = drawn.side;
-  const std::array<Eigen::Vector2d, kNumCorners> truth = {
-      top_left, top_left + Eigen::Vector2d(s, 0), top_left + Eigen::Vector2d(s, s),
-      top_left + Eigen::Vector2d(0, s)};
-  double max_error = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    max_error = std::max(max_error, (marker.corners_in_image_px[i] - truth[i]).norm());
-  }
-  return max_error;
+  return MaxCornerShift(marker.corners_in_image_px,
+                        {top_left, top_left + Eigen::Vector2d(s, 0),
+                         top_left + Eigen::Vector2d(s, s), top_left + Eigen::Vector2d(0, s)});
 }
 
 std::vector<MarkerDetection> Sorted(std::vector<MarkerDetection> markers) {

@@ -4,12 +4,9 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
-#include <opencv2/imgproc.hpp>
 
 namespace velamap {
 namespace {
-
-using Quad = std::array<Eigen::Vector2d, kNumCorners>;
 
 constexpr int kNumCells = 8;
 
@@ -33,8 +30,8 @@ struct Picture {
   double quiet_zone_cells = 100.0;
   double gamma = 1.0;
 
-  Quad Corners() const {
-    Quad corners;
+  QuadCorners Corners() const {
+    QuadCorners corners;
     const double signs[kNumCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       corners[i] = center_px + Eigen::Rotation2Dd(angle) *
@@ -70,7 +67,7 @@ struct Picture {
 
 TEST(SaddleCornersTest, FindsTheMeetingPointOfTwoSquares) {
   const Picture picture;
-  Quad corners = picture.Corners();
+  QuadCorners corners = picture.Corners();
   for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(0.8, -0.6);
   EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
@@ -81,7 +78,7 @@ TEST(SaddleCornersTest, FindsTheMeetingPointOfTwoSquares) {
 TEST(SaddleCornersTest, SpreadInkDoesNotMoveThem) {
   Picture picture;
   picture.spread_px = 0.3;
-  Quad corners = picture.Corners();
+  QuadCorners corners = picture.Corners();
   EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
@@ -91,9 +88,9 @@ TEST(SaddleCornersTest, SpreadInkDoesNotMoveThem) {
 TEST(SaddleCornersTest, LeavesTheCornersOfALonelySquare) {
   Picture picture;
   picture.touching = false;
-  Quad corners = picture.Corners();
+  QuadCorners corners = picture.Corners();
   corners[0].x() += 0.8;
-  const Quad before = corners;
+  const QuadCorners before = corners;
   EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
   EXPECT_EQ(corners, before);
 }
@@ -110,7 +107,7 @@ TEST(SaddleCornersTest, LeavesTheCornersOfANarrowQuietZoneOnDarkGround) {
         picture.quiet_zone_cells = quiet_zone_cells;
         picture.blur_px = blur_px;
         picture.gamma = gamma;
-        Quad corners = picture.Corners();
+        QuadCorners corners = picture.Corners();
         EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
       }
     }
@@ -119,7 +116,7 @@ TEST(SaddleCornersTest, LeavesTheCornersOfANarrowQuietZoneOnDarkGround) {
 
 TEST(SaddleCornersTest, LeavesCellsThatAreTooSmallToTell) {
   const Picture picture;
-  Quad corners = picture.Corners();
+  QuadCorners corners = picture.Corners();
   EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(20), &corners), 0);
 }
 

@@ -64,9 +64,8 @@ TEST(ResolveRotationsAcrossFrames, ResolvedSymmetricMarkersAreEvidence) {
   // Marker 6 is seen with a telling neighbour and, elsewhere, only with 5 and a marker across.
   std::vector<FrameDetections> frames;
   for (int i = 0; i < 4; ++i) {
-    frames.push_back(Clear(i));
-    frames.back() = Frame(i, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
-                              TurnedMarker(5, 130, 100, 0), TurnedMarker(6, 130, 140, 0, 2)});
+    frames.push_back(Frame(i, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
+                               TurnedMarker(5, 130, 100, 0), TurnedMarker(6, 130, 140, 0, 2)}));
   }
   frames.push_back(Frame(7, {TurnedMarker(2, 160, 100, 88), TurnedMarker(5, 130, 100, 0, 2),
                              TurnedMarker(6, 130, 140, 0)}));

@@ -17,15 +17,7 @@ Dictionary MakeNineBitDictionary() {
     }
   }
   codes.insert(codes.end(), symmetric_codes.begin(), symmetric_codes.end());
-  cv::Mat bytes;
-  for (const MarkerCode code : codes) {
-    cv::Mat bits(kSize, kSize, CV_8UC1);
-    for (int i = 0; i < kSize * kSize; ++i) {
-      bits.at<std::uint8_t>(i / kSize, i % kSize) = code >> i & 1;
-    }
-    bytes.push_back(cv::aruco::Dictionary::getByteListFromBits(bits));
-  }
-  return {"dictionary_3x3.yml", cv::makePtr<cv::aruco::Dictionary>(bytes, kSize, 0)};
+  return MakeDictionary("dictionary_3x3.yml", {kSize, codes, 1, kNumSymmetric});
 }
 
 }  // namespace velamap
