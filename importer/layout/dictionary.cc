@@ -113,19 +113,13 @@ cv::Mat ReadMarkerBits(const cv::FileStorage& storage, const std::string& path,
   return bits;
 }
 
-cv::Mat Turned(const cv::Mat& bits, int quarter_turns) {
-  cv::Mat turned = bits.clone();
-  for (int i = 0; i < quarter_turns; ++i) cv::rotate(turned, turned, cv::ROTATE_90_CLOCKWISE);
-  return turned;
-}
-
 // The smallest number of bits in which two markers differ, over all rotations. Throws InputError if
 // two markers are the same.
 int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
   int min_distance = static_cast<int>(bits.front().total()) + 1;
   for (std::size_t i = 0; i < bits.size(); ++i) {
+    cv::Mat turned = bits[i].clone();
     for (int turns = 0; turns < 4; ++turns) {
-      const cv::Mat turned = Turned(bits[i], turns);
       for (std::size_t j = i + 1; j < bits.size(); ++j) {
         const int distance = static_cast<int>(cv::norm(turned, bits[j], cv::NORM_L1) + 0.5);
         if (distance == 0) {
@@ -134,6 +128,7 @@ int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
         }
         min_distance = std::min(min_distance, distance);
       }
+      cv::rotate(turned, turned, cv::ROTATE_90_CLOCKWISE);
     }
   }
   return min_distance;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -21,14 +20,6 @@ constexpr std::array<std::pair<const char*, FrameKind>, 4> kKeywords = {
      {"reference_part", FrameKind::kReferencePart},
      {"lines", FrameKind::kLines},
      {"camera", FrameKind::kCamera}}};
-
-// Returns an empty list if the text is not a list of marker ids.
-std::vector<int> ParseIds(const std::string& text) {
-  const std::optional<std::vector<int>> ids = ParseNumberList<int>(text);
-  const auto is_marker_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };
-  if (!ids || !std::all_of(ids->begin(), ids->end(), is_marker_id)) return {};
-  return *ids;
-}
 
 }  // namespace
 
@@ -53,8 +44,10 @@ FrameChoice ParseFrameChoice(const std::string& text, const std::string& what) {
   constexpr std::size_t kNumIds = 3;
   FrameChoice choice;
   if (ParseFrameKeyword(text, &choice.kind)) return choice;
-  const std::vector<int> ids = ParseIds(text);
-  if (ids.size() != kNumIds || std::set<int>(ids.begin(), ids.end()).size() != kNumIds) {
+  const auto ids = ParseNumberList<int>(text).value_or(std::vector<int>());
+  const auto is_marker_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };
+  if (ids.size() != kNumIds || std::set<int>(ids.begin(), ids.end()).size() != kNumIds ||
+      !std::all_of(ids.begin(), ids.end(), is_marker_id)) {
     throw InputError(
         fmt::format("{}: '{}' is not a frame; expected known_points, reference_part, lines, "
                     "camera, or the ids of "
