@@ -91,25 +91,34 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
   }
 }
 
+// Calls `write` with the path of a temporary sibling of `target`, which is then renamed. Creates
+// the missing parents. Messages name `shown_path`.
+void ReplaceFile(const fs::path& target, const fs::path& shown_path,
+                 const std::function<void(const fs::path&)>& write) {
+  CreateFolders(target.parent_path());
+  const fs::path temporary_path = TemporarySibling(target);
+  try {
+    write(temporary_path);
+    std::error_code error;
+    fs::rename(temporary_path, target, error);
+    if (error) ThrowCannotWrite(shown_path, error.message());
+  } catch (...) {
+    RemoveAll(temporary_path);
+    throw;
+  }
+}
+
 void WriteAndRename(const fs::path& path, bool is_synced,
                     const std::function<void(std::ostream&)>& write) {
-  std::error_code error;
   const fs::path target = CanonicalPath(path);
   if (Exists(target) && !IsRegularFile(target)) {
     ThrowCannotWrite(path, "it exists and is not a regular file; choose another output path");
   }
   CheckNotProtected(path);
-  CreateFolders(target.parent_path());
-  const fs::path temporary_path = TemporarySibling(target);
-  try {
+  ReplaceFile(target, path, [&](const fs::path& temporary_path) {
     WriteStream(temporary_path, path, write);
     if (is_synced) Sync(temporary_path, fsync);
-    fs::rename(temporary_path, target, error);
-    if (error) ThrowCannotWrite(path, error.message());
-  } catch (...) {
-    RemoveAll(temporary_path);
-    throw;
-  }
+  });
 }
 
 // Messages name `from` if that cannot be read, and else `shown_to`.
@@ -219,18 +228,8 @@ void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& w
 void CopyFile(const fs::path& from, const fs::path& to) { CopyFile(from, to, to); }
 
 void CloneFile(const fs::path& from, const fs::path& to) {
-  const fs::path target = CanonicalPath(to);
-  CreateFolders(target.parent_path());
-  const fs::path temporary_path = TemporarySibling(target);
-  try {
-    CopyFile(from, temporary_path, to);
-    std::error_code error;
-    fs::rename(temporary_path, target, error);
-    if (error) ThrowCannotWrite(to, error.message());
-  } catch (...) {
-    RemoveAll(temporary_path);
-    throw;
-  }
+  ReplaceFile(CanonicalPath(to), to,
+              [&](const fs::path& temporary_path) { CopyFile(from, temporary_path, to); });
 }
 
 void MoveFile(const fs::path& from, const fs::path& to) {
