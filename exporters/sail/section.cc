@@ -5,7 +5,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include "exporters/sail/rig_numbers.h"
 #include "exporters/sail/section_lines.h"

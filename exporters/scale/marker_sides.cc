@@ -5,7 +5,6 @@
 #include <map>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include "exporters/scale/metric_shape.h"
 #include "exporters/shape/shape_sigma.h"

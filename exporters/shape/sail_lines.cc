@@ -3,8 +3,6 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Geometry>
-
 #include "importer/base/error.h"
 #include "importer/geometry/principal_axes.h"
 

@@ -4,7 +4,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include "importer/geometry/units.h"
 #include "tests/exporters/compare/example_comparison.h"

@@ -7,7 +7,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include "exporters/design/cad_reader.h"
 #include "exporters/formats/cad_writer.h"

@@ -1,6 +1,5 @@
 #include "exporters/formats/shape_csv.h"
 
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <random>

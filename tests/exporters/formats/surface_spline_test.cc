@@ -1,7 +1,6 @@
 #include "exporters/formats/surface_spline.h"
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include "tests/exporters/sail/example_surface.h"
 
