@@ -70,11 +70,6 @@ std::vector<std::string> Wrapped(std::string text) {
   return lines;
 }
 
-struct Scale {
-  double px_per_mm = 1.0;
-  double left = kMargin;
-};
-
 // Largest depths above and below the chord, mm.
 struct Range {
   double above = 0.0, below = 0.0;
@@ -93,11 +88,9 @@ Range DepthRange(const Section& section) {
   return range;
 }
 
-void WriteProfile(const Section& section, const Scale& scale, double chord_y, std::ostream& out) {
-  const auto x = [&](double chordwise_m) {
-    return scale.left + scale.px_per_mm * kMmPerM * chordwise_m;
-  };
-  const auto y = [&](double depth_m) { return chord_y - scale.px_per_mm * kMmPerM * depth_m; };
+void WriteProfile(const Section& section, double px_per_mm, double chord_y, std::ostream& out) {
+  const auto x = [&](double chordwise_m) { return kMargin + px_per_mm * kMmPerM * chordwise_m; };
+  const auto y = [&](double depth_m) { return chord_y - px_per_mm * kMmPerM * depth_m; };
   const double chord_m = section.chord_m.value;
   out << fmt::format(
       "<line class=\"chord\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\"/>\n", x(0),
@@ -122,9 +115,9 @@ void WriteProfile(const Section& section, const Scale& scale, double chord_y, st
   }
 }
 
-void WriteScaleBar(const Scale& scale, double y, std::ostream& out) {
+void WriteScaleBar(double px_per_mm, double y, std::ostream& out) {
   // 1, 2 or 5 times a power of ten, up to a quarter of the width.
-  const double quarter_mm = kDrawingWidth / 4 / scale.px_per_mm;
+  const double quarter_mm = kDrawingWidth / 4 / px_per_mm;
   double length_mm = std::pow(10.0, std::floor(std::log10(quarter_mm)));
   for (const double factor : {5.0, 2.0}) {
     if (factor * length_mm <= quarter_mm) {
@@ -132,9 +125,9 @@ void WriteScaleBar(const Scale& scale, double y, std::ostream& out) {
       break;
     }
   }
-  const double end = scale.left + scale.px_per_mm * length_mm;
-  out << fmt::format("<path class=\"bar\" d=\"M{0:.2f} {1:.2f}v6h{2:.2f}v-6\"/>\n", scale.left,
-                     y - 6, end - scale.left);
+  const double end = kMargin + px_per_mm * length_mm;
+  out << fmt::format("<path class=\"bar\" d=\"M{0:.2f} {1:.2f}v6h{2:.2f}v-6\"/>\n", kMargin, y - 6,
+                     end - kMargin);
   WriteText(end + 8, y, "small",
             fmt::format("{:.6g} mm; unit mm, luff left, leeward up", length_mm), out);
 }
@@ -167,14 +160,14 @@ void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& fram
     longest_mm = std::max(longest_mm, kMmPerM * section.chord_m.value);
     ranges.push_back(DepthRange(section));
   }
-  const Scale scale{kDrawingWidth / longest_mm, kMargin};
+  const double px_per_mm = kDrawingWidth / longest_mm;
   // Lays out the profiles first, because the drawing starts with its size.
   std::vector<double> chord_ys(ranges.size());
   double y = kMargin;
   for (std::size_t i = ranges.size(); i-- > 0;) {  // from the head down
-    const double above = scale.px_per_mm * ranges[i].above + kLine;
-    const double below = scale.px_per_mm * ranges[i].below + kLine;
-    chord_ys[i] = y + std::max(above, kLine);
+    const double above = px_per_mm * ranges[i].above + kLine;
+    const double below = px_per_mm * ranges[i].below + kLine;
+    chord_ys[i] = y + above;
     y += std::max(above + below, (kNumberLines + 1) * kLine) + kLine / 2;
   }
   const std::vector<std::string> foot = FootLines(report, frame);
@@ -193,8 +186,8 @@ void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& fram
       << fmt::format("<rect width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#fff\"/>\n", kWidth, height);
   for (std::size_t i = 0; i < report.sections.size(); ++i) {
     const Section& section = report.sections[i];
-    WriteProfile(section, scale, chord_ys[i], out);
-    const double top = chord_ys[i] - std::max(scale.px_per_mm * ranges[i].above, 0.0);
+    WriteProfile(section, px_per_mm, chord_ys[i], out);
+    const double top = chord_ys[i] - px_per_mm * ranges[i].above;
     const double left = 2 * kMargin + kDrawingWidth;
     WriteText(left, top, "name", section.part + " " + section.name, out);
     const std::vector<std::string> lines = NumbersText(section);
@@ -202,7 +195,7 @@ void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& fram
       WriteText(left, top + kLine * static_cast<double>(k + 1), "numbers", lines[k], out);
     }
   }
-  if (!report.sections.empty()) WriteScaleBar(scale, bar_y, out);
+  if (!report.sections.empty()) WriteScaleBar(px_per_mm, bar_y, out);
   for (std::size_t k = 0; k < foot.size(); ++k) {
     WriteText(kMargin, bar_y + kLine * static_cast<double>(k + 1) + 6, "small", foot[k], out);
   }
