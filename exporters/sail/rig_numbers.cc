@@ -97,11 +97,9 @@ void SetLuffNumbers(const PartContext& context, const std::optional<MarkerPair>&
   if (indices.empty() || (!centerline && along_boat == nullptr)) return;
   const LineCurve luff = FitLuff(centers, indices);
   const NumbersFunction numbers = [&](const MarkerCenters& moved, int) -> Eigen::VectorXd {
-    const SpaceCurve foot = centerline ? SpaceCurve{} : along_boat->Refit(moved);
-    const Eigen::Vector3d aft =
-        centerline ? Eigen::Vector3d(moved.x_m.col(centerline->last_idx) -
-                                     moved.x_m.col(centerline->first_idx))
-                   : Eigen::Vector3d(EvaluateCurve(foot, 1.0) - EvaluateCurve(foot, 0.0));
+    const Eigen::Vector3d aft = centerline ? Eigen::Vector3d(moved.x_m.col(centerline->last_idx) -
+                                                             moved.x_m.col(centerline->first_idx))
+                                           : ChordOf(along_boat->Refit(moved));
     return LuffNumbers(luff.Refit(moved), aft, context.axes.leeward);
   };
   std::set<int> moved(indices.begin(), indices.end());

@@ -92,7 +92,7 @@ Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
   const ProfileAxes axes = ProfileAxesOf(curve, context.axes);
   section.chord_direction = axes.chord;
   section.depth_direction = axes.depth;
-  section.height_m = context.axes.up.dot(EvaluateCurve(curve, 0.0) + EvaluateCurve(curve, 1.0)) / 2;
+  section.height_m = MiddleHeight(curve, context.axes.up);
   section.chord_m = estimate(kChord);
   section.camber = estimate(kCamber);
   if (std::abs(section.camber.value) >= kMinCamber)
@@ -211,9 +211,7 @@ SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame,
 
 SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& up) {
   // Azimuths relative to the lowest chord are far from the jump at 180 degrees.
-  const Eigen::Vector3d reference =
-      EvaluateCurve(lines.front().fit.curve, 1.0) - EvaluateCurve(lines.front().fit.curve, 0.0);
-  SectionAxes axes{up, reference, 1};
+  SectionAxes axes{up, ChordOf(lines.front().fit.curve), 1};
   double depth_m = 0.0;
   for (const LineCurve& line : lines) depth_m += MeanDepth(line.fit.curve, axes);
   if (depth_m < 0) axes.leeward = -1;

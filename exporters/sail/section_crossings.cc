@@ -72,7 +72,7 @@ bool IsListedFromTheFoot(const std::vector<LineCurve>& lines) {
 std::vector<Crossing> FindCrossings(const std::vector<LineCurve>& lines,
                                     const Eigen::Vector3d& up) {
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
-  for (const LineCurve& line : lines) along += ChordOf(line);
+  for (const LineCurve& line : lines) along += ChordOf(line.fit.curve);
   const Eigen::Vector3d aside = along.cross(up).normalized();
   const bool from_the_foot = IsListedFromTheFoot(lines);
   std::vector<Crossing> crossings;
@@ -86,7 +86,8 @@ std::vector<Crossing> FindCrossings(const std::vector<LineCurve>& lines,
             "sections {} and {} are in the wrong order: {} is {:.1f} mm above {}, and the layout "
             "lists it below",
             lines[i].name, lines[j].name, lines[j].name,
-            kMmPerM * (MiddleHeight(lines[j], up) - MiddleHeight(lines[i], up)), lines[i].name);
+            kMmPerM * (MiddleHeight(lines[j].fit.curve, up) - MiddleHeight(lines[i].fit.curve, up)),
+            lines[i].name);
       }
       if (!text.empty()) crossings.push_back({i, j, std::move(text)});
     }

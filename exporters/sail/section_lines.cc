@@ -16,7 +16,7 @@ namespace {
 std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& indices,
                        const Eigen::Vector3d& up) {
   constexpr double kMinSine = 0.1;  // about 6 degrees
-  const Eigen::Matrix3Xd x = centers.Points(indices);
+  const Eigen::Matrix3Xd x = centers.x_m(Eigen::all, indices);
   const Eigen::Vector3d chord = x.col(x.cols() - 1) - x.col(0);
   const auto id = [&](Eigen::Index i) {
     return centers.marker_ids[static_cast<std::size_t>(indices[static_cast<std::size_t>(i)])];
@@ -43,7 +43,7 @@ std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& ind
 void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
   if (curves->lines.empty()) return;
   const auto flat = [&](const LineCurve& line) -> Eigen::Vector3d {
-    const Eigen::Vector3d chord = ChordOf(line);
+    const Eigen::Vector3d chord = ChordOf(line.fit.curve);
     return (chord - up * up.dot(chord)).normalized();
   };
   Eigen::Vector3d sense = 0.5 * flat(curves->lines.front());
@@ -114,26 +114,14 @@ Eigen::ArrayXd CutFractions() {
   return Eigen::ArrayXd::LinSpaced(kNumFractions, 0.0, 1.0);
 }
 
-Eigen::Vector3d ChordOf(const LineCurve& line) {
-  return EvaluateCurve(line.fit.curve, 1.0) - EvaluateCurve(line.fit.curve, 0.0);
-}
-
-double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
-  return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
-}
-
 std::optional<int> MarkerCenters::IndexOf(int marker_id) const {
   const auto it = std::lower_bound(marker_ids.begin(), marker_ids.end(), marker_id);
   if (it == marker_ids.end() || *it != marker_id) return std::nullopt;
   return static_cast<int>(it - marker_ids.begin());
 }
 
-Eigen::Matrix3Xd MarkerCenters::Points(const std::vector<int>& indices) const {
-  return x_m(Eigen::all, indices);
-}
-
 CurveData MarkerCenters::Data(const std::vector<int>& indices) const {
-  CurveData data{Points(indices), {}};
+  CurveData data{x_m(Eigen::all, indices), {}};
   std::vector<int> rows;
   for (const int index : indices) {
     if (!has_sigma[static_cast<std::size_t>(index)]) return data;
@@ -181,7 +169,7 @@ PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
   for (const bool with_sigma : {false, true}) SmoothTogether(with_sigma, centers, &curves.lines);
   std::stable_sort(curves.lines.begin(), curves.lines.end(),
                    [&](const LineCurve& a, const LineCurve& b) {
-                     return MiddleHeight(a, up) < MiddleHeight(b, up);
+                     return MiddleHeight(a.fit.curve, up) < MiddleHeight(b.fit.curve, up);
                    });
   DropReversed(up, &curves);
   LeaveOutCrossing(up, &curves);

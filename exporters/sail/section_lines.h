@@ -22,7 +22,6 @@ struct MarkerCenters {
   std::vector<bool> has_sigma;
 
   std::optional<int> IndexOf(int marker_id) const;
-  Eigen::Matrix3Xd Points(const std::vector<int>& indices) const;
   // The covariance is empty if one of the markers has no sigma.
   CurveData Data(const std::vector<int>& indices) const;
 };
@@ -62,9 +61,6 @@ PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
 // fractions of their lengths and as seen from the side, or if they stand in another order than the
 // layout lists them, foot to head.
 void LeaveOutCrossing(const Eigen::Vector3d& up, PartCurves* curves);
-
-Eigen::Vector3d ChordOf(const LineCurve& line);
-double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up);  // of its chord
 
 // Curve parameters at which lines are compared and connected.
 Eigen::ArrayXd CutFractions();

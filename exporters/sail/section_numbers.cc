@@ -93,7 +93,7 @@ double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a,
 }
 
 ProfileAxes ProfileAxesOf(const SpaceCurve& curve, const SectionAxes& axes) {
-  const Eigen::Vector3d chord = EvaluateCurve(curve, 1.0) - EvaluateCurve(curve, 0.0);
+  const Eigen::Vector3d chord = ChordOf(curve);
   return {chord.normalized(), axes.leeward * axes.up.cross(chord).normalized()};
 }
 

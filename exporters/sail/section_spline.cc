@@ -146,6 +146,14 @@ CurveJet EvaluateCurveJet(const SpaceCurve& curve, double t) {
   return {jet.col(0), jet.col(1), jet.col(2)};
 }
 
+Eigen::Vector3d ChordOf(const SpaceCurve& curve) {
+  return EvaluateCurve(curve, 1.0) - EvaluateCurve(curve, 0.0);
+}
+
+double MiddleHeight(const SpaceCurve& curve, const Eigen::Vector3d& up) {
+  return up.dot(EvaluateCurve(curve, 0.0) + EvaluateCurve(curve, 1.0)) / 2;
+}
+
 Eigen::ArrayXd ChordLengthParameters(const Eigen::Matrix3Xd& points) {
   VELAMAP_CHECK(points.cols() >= 2);
   Eigen::ArrayXd parameters(points.cols());

@@ -35,6 +35,9 @@ struct CurveJet {
 Eigen::Vector3d EvaluateCurve(const SpaceCurve& curve, double t);
 CurveJet EvaluateCurveJet(const SpaceCurve& curve, double t);
 
+Eigen::Vector3d ChordOf(const SpaceCurve& curve);  // from the first to the last point
+double MiddleHeight(const SpaceCurve& curve, const Eigen::Vector3d& up);  // of the chord
+
 // Chord lengths from the first point, normalized to 1. Needs at least two points and distinct
 // neighbours.
 Eigen::ArrayXd ChordLengthParameters(const Eigen::Matrix3Xd& points_in_shape_m);
