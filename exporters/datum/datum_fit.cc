@@ -53,6 +53,11 @@ struct SetSystem {
   ByPose by_pose;              // whitened
   Eigen::VectorXd residuals;   // whitened
   PoseMatrix pose_covariance;  // of the adjusted pose, m^2
+
+  // The part of whitened values that a change of the pose cannot compensate.
+  Eigen::VectorXd WithoutPose(const Eigen::VectorXd& values) const {
+    return values - by_pose * (pose_covariance * (by_pose.transpose() * values));
+  }
 };
 
 SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
@@ -72,10 +77,8 @@ SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
 // normalized by their covariance (Baarda's test).
 std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen::Index>& begins) {
   constexpr double kMinRedundancy = 1e-6;  // smaller values are rounding errors
-  const Eigen::VectorXd adjusted =
-      system.residuals -
-      system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * system.residuals));
-  const Eigen::VectorXd weighted = system.whitener.transpose() * adjusted;
+  const Eigen::VectorXd weighted =
+      system.whitener.transpose() * system.WithoutPose(system.residuals);
   const ByPose by_pose = system.whitener.transpose() * system.by_pose;
   std::vector<double> sigmas;
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
@@ -172,14 +175,9 @@ std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const 
   const SetSystem system =
       MakeSystem(points, equations, ResidualCovariance(points, set, known_from_centred.rotation));
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
-  // The part of the whitened values that a change of the pose cannot compensate.
-  const auto without_pose = [&system](const Eigen::VectorXd& values) -> Eigen::VectorXd {
-    return values -
-           system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * values));
-  };
-  const double weight = by_scale.dot(without_pose(by_scale));
+  const double weight = by_scale.dot(system.WithoutPose(by_scale));
   if (!(weight * kMaxSigma * kMaxSigma > 1)) return std::nullopt;
-  return ScaleChange{-by_scale.dot(without_pose(system.residuals)) / weight,
+  return ScaleChange{-by_scale.dot(system.WithoutPose(system.residuals)) / weight,
                      1.0 / std::sqrt(weight)};
 }
 

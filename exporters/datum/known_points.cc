@@ -136,15 +136,16 @@ void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
 }
 
 // WhatDatumLacks() for the points that are in the shape, with the points that are missing there.
-std::string Lack(const std::vector<ComparedPoint>& points, const KnownPointsInShape& present) {
+std::string Lack(const std::vector<ComparedPoint>& points) {
   std::vector<KnownPoint> found;
   std::vector<std::string> missing;
-  for (const std::size_t i : present.known_idxs) found.push_back(points[i].known);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool is_found =
-        std::binary_search(present.known_idxs.begin(), present.known_idxs.end(), i);
-    const KnownPoint& known = points[i].known;
-    if (!is_found && !known.is_check) missing.push_back(PointName(known.marker_id, known.corner));
+  for (const ComparedPoint& point : points) {
+    const KnownPoint& known = point.known;
+    if (point.state != PointState::kNotInShape) {
+      found.push_back(known);
+    } else if (!known.is_check) {
+      missing.push_back(PointName(known.marker_id, known.corner));
+    }
   }
   std::string lack = WhatDatumLacks(found);
   if (lack.empty() || missing.empty()) return lack;
@@ -190,7 +191,7 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
       CollectKnownPointsInShape(shape, layout.known_points, covariance);
   const DatumPoints& points = present.points;
   for (const std::size_t i : present.known_idxs) fit.points[i].state = PointState::kNotCompared;
-  fit.reason = Lack(fit.points, present);
+  fit.reason = Lack(fit.points);
   if (!fit.reason.empty()) return fit;
   const std::optional<DatumAgreement> agreement = Agree(points, present.datum_idxs);
   const bool are_mirrored = AreMirrored(points, present.datum_idxs, agreement);
