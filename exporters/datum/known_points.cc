@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "exporters/datum/datum_consensus.h"
-#include "exporters/datum/known_points_in_shape.h"
+#include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/known_distances.h"
 #include "importer/base/statistics.h"
 
@@ -18,6 +18,45 @@ constexpr double kMaxScaleSigmas = 3.0;
 // Errors of the camera and of the print change the size by at most this (reconstruct/adjust). A
 // larger change comes from a wrong unit or marker_length.
 constexpr double kMaxGrowth = 0.07;
+
+// The known points of the layout that are in the shape.
+struct KnownPointsInShape {
+  std::vector<std::size_t> known_idxs;  // ascending indices into the known points of the layout
+  DatumPoints points;                   // in the order of `known_idxs`
+  PointSet datum_idxs;                  // indices into `points` of those that are not checks
+};
+
+// `covariance` may be null. Points that it lacks count as exact.
+KnownPointsInShape CollectKnownPointsInShape(const MarkerShape& shape,
+                                             const std::vector<KnownPoint>& known,
+                                             const PointCovariance* covariance) {
+  KnownPointsInShape present;
+  std::vector<CornerId> found;
+  DatumPoints& points = present.points;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const ShapeMarker* marker = FindMarker(shape, known[i].marker_id);
+    if (marker == nullptr) continue;
+    const auto& x = marker->x_in_shape_m[static_cast<std::size_t>(known[i].corner)];
+    if (!x) continue;
+    if (!known[i].is_check) present.datum_idxs.push_back(points.points.size());
+    present.known_idxs.push_back(i);
+    found.push_back({known[i].marker_id, known[i].corner});
+    points.points.push_back({*x, known[i].x_m, known[i].sigma_m});
+    points.center_in_shape_m += *x;
+  }
+  if (found.empty()) return present;
+  const auto count = static_cast<double>(found.size());
+  points.center_in_shape_m /= count;
+  double squared_m2 = 0.0;
+  for (DatumPoint& point : points.points) {
+    point.x_m -= points.center_in_shape_m;
+    squared_m2 += point.x_m.squaredNorm() / count;
+  }
+  constexpr double kMinRadius_m = 1e-4;  // keeps divisions by the radius finite
+  points.radius_m = std::max(kMinRadius_m, std::sqrt(squared_m2));
+  points.covariance_m2 = JointCovarianceOfPoints(covariance, found);
+  return present;
+}
 
 // The median, over all pairs of points with three known coordinates, of the known distance divided
 // by the distance in the shape.
