@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -139,26 +138,23 @@ bool HasLines(const Layout& layout, const std::string& part_name) {
   });
 }
 
-// `is_whole`: by marker id, of the markers of the shape.
-void CountMarkers(const Layout& layout, const std::map<int, bool>& is_whole,
-                  ShapeMetrics* metrics) {
+void CountMarkers(const Layout& layout, const MarkerShape& shape, ShapeMetrics* metrics) {
   if (!layout.HasMarkers()) return;
   const std::vector<int> layout_ids = MarkerIds(layout);
-  for (const auto& [marker_id, whole] : is_whole) {
-    if (whole && !std::binary_search(layout_ids.begin(), layout_ids.end(), marker_id)) {
-      metrics->other_marker_ids.push_back(marker_id);
+  for (const MarkerMetrics& marker : metrics->markers) {
+    if (!std::binary_search(layout_ids.begin(), layout_ids.end(), marker.marker_id)) {
+      metrics->other_marker_ids.push_back(marker.marker_id);
     }
   }
-  int num_markers = 0, num_sail = 0, num_sail_whole = 0;
+  int num_sail = 0, num_sail_whole = 0;
   for (const int marker_id : layout_ids) {
-    const auto found = is_whole.find(marker_id);
-    const bool whole = found != is_whole.end() && found->second;
+    const bool whole = FindWholeMarker(shape, marker_id) != nullptr;
     if (!whole) metrics->missing_marker_ids.push_back(marker_id);
-    ++num_markers;
     if (!HasLines(layout, PartOfMarker(layout, marker_id))) continue;
     ++num_sail;
     num_sail_whole += whole;
   }
+  const int num_markers = static_cast<int>(layout_ids.size());
   const int num_missing = static_cast<int>(metrics->missing_marker_ids.size());
   metrics->num_layout_markers = num_markers;
   metrics->reconstruction_ratio = static_cast<double>(num_markers - num_missing) / num_markers;
@@ -174,10 +170,8 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
   CheckHasMarkersOf(layout, shape);
   ShapeMetrics metrics;
   std::vector<double> area_errors_mm2, area_errors_percent, side_errors_mm;
-  std::map<int, bool> is_whole;
   VarianceMean area_variance, side_variance;
   for (const ShapeMarker& marker : shape.markers) {
-    is_whole[marker.marker_id] = marker.IsWhole();
     if (!marker.IsWhole()) continue;
     ++metrics.num_markers;
     metrics.markers.push_back(MetricsOfMarker(marker, MarkerLength(layout, marker.marker_id),
@@ -195,7 +189,7 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
   metrics.area_sigma_mm2 = area_variance.RootOfMean();
   metrics.side_sigma_mm = Times(kMmPerM, side_variance.RootOfMean());
 
-  CountMarkers(layout, is_whole, &metrics);
+  CountMarkers(layout, shape, &metrics);
   return metrics;
 }
 
