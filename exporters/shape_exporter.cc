@@ -21,6 +21,7 @@
 #include "importer/base/files.h"
 #include "importer/base/log.h"
 #include "importer/base/replacement.h"
+#include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 
@@ -118,7 +119,8 @@ void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choic
                                         report->scale.relative_sigma.value_or(0.0));
   report->frame = ChooseFrame(shape, layout, choice, FrameOfKnownPoints(report->known_points));
   const Rigid3& frame_from_shape = report->frame.frame_from_shape;
-  MoveModel(frame_from_shape, &report->metric_model);
+  TransformModel({1.0, frame_from_shape.rotation, frame_from_shape.translation},
+                 &report->metric_model);
   if (report->uncertainty) {
     report->uncertainty->points =
         RotateCovariance(frame_from_shape.rotation, report->uncertainty->points);

@@ -1,7 +1,6 @@
 #include "exporters/shape/shape_transform.h"
 
 #include "exporters/shape/shape_sigma.h"
-#include "reconstruct/model/gauge.h"
 
 namespace velamap {
 
@@ -41,10 +40,6 @@ void MoveShape(const Rigid3& frame_from_shape, const PointCovariance* covariance
       if (turned || !is_round) sigma_m = turned;
     }
   }
-}
-
-void MoveModel(const Rigid3& frame_from_shape, Model* model) {
-  TransformModel({1.0, frame_from_shape.rotation, frame_from_shape.translation}, model);
 }
 
 }  // namespace velamap

@@ -7,7 +7,6 @@
 #include "exporters/shape/marker_shape.h"
 #include "importer/geometry/rigid3.h"
 #include "reconstruct/geometry/point_covariance.h"
-#include "reconstruct/model/model.h"
 
 namespace velamap {
 
@@ -21,8 +20,5 @@ PointCovariance RotateCovariance(const Eigen::Quaterniond& frame_from_shape,
 // axes and drops the others.
 void MoveShape(const Rigid3& frame_from_shape, const PointCovariance* covariance_in_frame,
                MarkerShape* shape);
-
-// Moves points and cameras of a metric model into the frame.
-void MoveModel(const Rigid3& frame_from_shape, Model* model);
 
 }  // namespace velamap

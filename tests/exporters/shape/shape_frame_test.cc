@@ -8,7 +8,6 @@
 
 #include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"
-#include "tests/exporters/example_model.h"
 #include "tests/exporters/sail/sail_shapes.h"
 #include "tests/support/error_matchers.h"
 
@@ -226,21 +225,6 @@ TEST(ShapeFrame, WithoutLayoutItIsTheCamera) {
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
   EXPECT_EQ(frame.kind, FrameKind::kCamera);
   EXPECT_FALSE(frame.up_in_frame);
-}
-
-TEST(ShapeFrame, MovedModelAndShapeAgreeAndReprojectAlike) {
-  const Model model = ExampleModel();
-  Model moved = model;
-  const Rigid3 motion = ArbitraryMotion();
-  MoveModel(motion, &moved);
-  for (const auto& [id, point] : model.points3D) {
-    ExpectNear(moved.points3D.at(id).x_in_world, motion * point.x_in_world, 1e-12);
-  }
-  for (std::size_t i = 0; i < model.images.size(); ++i) {
-    const Eigen::Vector3d x = model.points3D.begin()->second.x_in_world;
-    ExpectNear(moved.images[i].cam_from_world * (motion * x), model.images[i].cam_from_world * x,
-               1e-12);
-  }
 }
 
 // One marker whose corners share their errors, which differ between the axes.
