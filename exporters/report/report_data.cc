@@ -160,7 +160,7 @@ Json JsonOf(const ReportSection& section) {
   return json;
 }
 
-Json JsonOf(const ReportRig& rig) {
+Json JsonOf(const RigNumbers& rig) {
   Json json = {{"part", rig.part}};
   AddFigure("luff_bend_m", "luff_bend_sigma_m", rig.luff_bend_m, &json);
   AddFigure("luff_sag_m", "luff_sag_sigma_m", rig.luff_sag_m, &json);

@@ -80,11 +80,6 @@ struct ReportDesign {
   double distance_mm = 0.0;  // of these from it after the best fit, rms
 };
 
-struct ReportRig {
-  std::string part;
-  std::optional<Estimate> luff_bend_m, luff_sag_m, sheeting_angle_deg;
-};
-
 struct ReportSurface {
   std::string part;      // empty for all markers
   bool is_sail = false;  // through lines of markers
@@ -131,7 +126,7 @@ struct ReportInput {
   std::vector<ReportSection> sections = {};
   std::vector<std::string> section_notes = {};
   std::optional<ReportDesign> design = {};
-  std::vector<ReportRig> rigs = {};
+  std::vector<RigNumbers> rigs = {};
   std::vector<ReportSurface> surfaces = {};
   std::optional<ReportClip> clip = {};  // of a video
 };

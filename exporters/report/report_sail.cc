@@ -66,11 +66,10 @@ std::vector<ReportSection> MakeReportSections(const SectionReport& sections) {
   return result;
 }
 
-std::vector<ReportRig> MakeReportRigs(const SectionReport& sections) {
-  std::vector<ReportRig> result;
+std::vector<RigNumbers> MakeReportRigs(const SectionReport& sections) {
+  std::vector<RigNumbers> result;
   for (const RigNumbers& rig : sections.rigs) {
-    if (!rig.luff_bend_m && !rig.sheeting_angle_deg) continue;
-    result.push_back({rig.part, rig.luff_bend_m, rig.luff_sag_m, rig.sheeting_angle_deg});
+    if (rig.luff_bend_m || rig.sheeting_angle_deg) result.push_back(rig);
   }
   return result;
 }

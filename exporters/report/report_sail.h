@@ -20,7 +20,7 @@ std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model&
 std::vector<ReportSection> MakeReportSections(const SectionReport& sections);
 
 // The parts whose rig is at least partly known.
-std::vector<ReportRig> MakeReportRigs(const SectionReport& sections);
+std::vector<RigNumbers> MakeReportRigs(const SectionReport& sections);
 
 // The surfaces of sails, with about 10 000 triangles each, then those of parts without lines. A
 // surface with too many triangles for the page is listed without them.

@@ -45,7 +45,7 @@ void AddEstimate(const std::string& key, const std::optional<Estimate>& estimate
   if (estimate->sigma) (*object)["sigma_" + key] = *estimate->sigma;
 }
 
-Json JsonOf(const RigNumbers& rig) {
+Json RigJson(const RigNumbers& rig) {
   Json object = {{"part", rig.part},
                  {"twist_reference", rig.twist_reference},
                  {"up_reference", rig.up_reference},
@@ -125,7 +125,7 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     root["sections"].push_back(std::move(object));
   }
   root["rigs"] = Json::array();
-  for (const RigNumbers& rig : report.rigs) root["rigs"].push_back(JsonOf(rig));
+  for (const RigNumbers& rig : report.rigs) root["rigs"].push_back(RigJson(rig));
   root["missing"] = Json::array();
   for (const MissingSection& missing : report.missing) {
     root["missing"].push_back(

@@ -252,7 +252,10 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   surface.x_in_shape_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   surface.triangles = {{{0, 1, 2}}};
   input.surfaces = {surface};
-  input.rigs = {{"sail", Estimate{0.03, 0.001}, std::nullopt, std::nullopt}};
+  RigNumbers rig;
+  rig.part = "sail";
+  rig.luff_bend_m = Estimate{0.03, 0.001};
+  input.rigs = {rig};
   input.clip = ReportClip{25, 4.04};
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);

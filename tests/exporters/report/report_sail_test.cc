@@ -45,7 +45,7 @@ TEST(ReportSail, RigsAboutWhichNothingIsKnownAreLeftOut) {
   sections.rigs[1].luff_sag_m = Estimate{0.01, std::nullopt};
   sections.rigs[2].part = "jib";
   sections.rigs[2].sheeting_angle_deg = Estimate{8.0, 0.1};
-  const std::vector<ReportRig> rigs = MakeReportRigs(sections);
+  const std::vector<RigNumbers> rigs = MakeReportRigs(sections);
   ASSERT_EQ(rigs.size(), 2u);
   EXPECT_EQ(rigs[0].part, "main");
   EXPECT_EQ(rigs[0].luff_bend_m->sigma, 0.001);
