@@ -31,6 +31,15 @@ std::string PartName(int column, int row) {
                      kColumnNames.at(static_cast<std::size_t>(column)));
 }
 
+// The fraction of the picture's cells in which corners were seen.
+double CoveredShare(const CameraCalibration& calibration) {
+  const std::vector<int> counts =
+      CountInCells(calibration.UsedViews(), calibration.Grid(kNumCoverageCells));
+  const auto num_covered =
+      std::count_if(counts.begin(), counts.end(), [](int count) { return count > 0; });
+  return static_cast<double>(num_covered) / static_cast<double>(counts.size());
+}
+
 // Parts of the picture of whose cells half or more are empty.
 std::vector<std::string> EmptyParts(const CameraCalibration& calibration) {
   const PictureGrid grid = calibration.Grid(kNumCoverageCells);
@@ -191,14 +200,6 @@ std::vector<std::string> AdvisedViews(const CameraCalibration& calibration) {
   if (tilts[2] == 0 || tilts[4] == 0) advice.push_back("the board tilted towards its corners");
   if (tilts[0] == 0) advice.push_back("the board straight from the front");
   return advice;
-}
-
-double CoveredShare(const CameraCalibration& calibration) {
-  const std::vector<int> counts =
-      CountInCells(calibration.UsedViews(), calibration.Grid(kNumCoverageCells));
-  const auto num_covered =
-      std::count_if(counts.begin(), counts.end(), [](int count) { return count > 0; });
-  return static_cast<double>(num_covered) / static_cast<double>(counts.size());
 }
 
 std::string DescribeBoard(const BoardFlaws& board) {

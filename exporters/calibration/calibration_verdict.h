@@ -17,9 +17,6 @@ Verdict JudgeCalibration(const CameraCalibration& calibration);
 // Views that would make the calibration better, one sentence each; empty where nothing is missing.
 std::vector<std::string> AdvisedViews(const CameraCalibration& calibration);
 
-// The fraction of the picture's cells in which corners were seen.
-double CoveredShare(const CameraCalibration& calibration);
-
 // `bent by 0.31 +- 0.02 % of its extent (RMS), ...`.
 std::string DescribeBoard(const BoardFlaws& board);
 
