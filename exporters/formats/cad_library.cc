@@ -9,14 +9,11 @@
 namespace velamap {
 namespace {
 
-std::mutex& GlobalMutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+std::mutex cad_mutex;
 
 }  // namespace
 
-CadSession::CadSession() : lock_(GlobalMutex()) {
+CadSession::CadSession() : lock_(cad_mutex) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPControl_Controller::Init();
   IGESControl_Controller::Init();
