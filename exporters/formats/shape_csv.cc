@@ -29,7 +29,6 @@ constexpr double kCenterTolerance_m = 1e-3;
 std::string Header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
 
 struct Row {
-  int line = 0;
   int marker_id = 0;
   int corner = 0;
   Eigen::Vector3d x_in_shape_m;
@@ -99,7 +98,6 @@ class RecordReader {
 
 Row ReadRow(const CsvRecord& record, const RecordReader& reader) {
   Row row;
-  row.line = record.line;
   row.marker_id = reader.ReadInt(kMarkerId, 0, kMaxMarkerId);
   row.corner = reader.ReadInt(kCorner, 0, kNumCorners);
   row.x_in_shape_m = reader.ReadVector(kX, std::numeric_limits<double>::lowest());
@@ -187,7 +185,7 @@ MarkerShape ReadShapeCsv(std::istream& in, const std::string& name) {
     const Row row = ReadRow(records[i], reader);
     const auto [marker, is_new] = markers.try_emplace(row.marker_id);
     AddRow(row, reader, is_new, &marker->second);
-    if (row.corner == 0) centre_lines[row.marker_id] = row.line;
+    if (row.corner == 0) centre_lines[row.marker_id] = records[i].line;
   }
 
   MarkerShape shape;
