@@ -19,8 +19,6 @@ void Append(const Metrics& metrics, MetricsReport* report) {
   report->metrics.insert(report->metrics.end(), metrics.begin(), metrics.end());
 }
 
-MetricTable LongTable(const char* name) { return {name, false, {}}; }
-
 void AddEstimate(const std::string& name, const std::string& unit,
                  const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
   if (!estimate) return;
@@ -104,7 +102,7 @@ void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
          report);
   AddSigma("area_sigma_mm2", metrics.area_sigma_mm2, &report->metrics);
   AddSigma("side_sigma_mm", metrics.side_sigma_mm, &report->metrics);
-  MetricTable table = LongTable("markers");
+  MetricTable table{"markers", false, {}};
   for (const MarkerMetrics& marker : metrics.markers) {
     table.rows.push_back({{"marker_id", marker.marker_id},
                           {"part", marker.part},
@@ -170,7 +168,7 @@ void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
 
 void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report) {
   std::vector<double> errors_mm, deviations_percent;
-  MetricTable table = LongTable("adjacent_distances");
+  MetricTable table{"adjacent_distances", false, {}};
   for (const AdjacentDistance& pair : distances) {
     const double deviation_m = pair.distance_m - pair.reference_distance_m;
     errors_mm.push_back(std::abs(deviation_m) * kMmPerM);
@@ -213,7 +211,7 @@ void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
          report);
   AddSigma("distance_after_scaling_sigma_mm", comparison.distance_after_scaling_sigma_m,
            &report->metrics, kMmPerM);
-  MetricTable table = LongTable("reference_markers");
+  MetricTable table{"reference_markers", false, {}};
   for (const MarkerDistance& marker : comparison.markers) {
     table.rows.push_back(
         {{"marker_id", marker.marker_id},
