@@ -106,7 +106,6 @@ PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples) {
   const auto fit = Fit(columns, terms);
   if (!fit) return NotDetermined("too few markers agree");
   PrintSpread spread;
-  spread.scale_error = EstimateOf(*fit, 0);
   if (print_varies) spread.print_um = EstimateOf(*fit, 1, kUmPerM);
   if (image_varies) spread.image_px = EstimateOf(*fit, print_varies ? 2 : 1);
   if (print_varies && image_varies) {

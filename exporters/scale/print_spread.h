@@ -28,9 +28,6 @@ struct UncertainValue {
 struct PrintSpread {
   std::optional<UncertainValue> print_um;
   std::optional<UncertainValue> image_px;
-  // Limit of side / printed side - 1 for large markers, on which the spread has no influence: the
-  // scale error of the shape if the spread is the only other error.
-  std::optional<UncertainValue> scale_error;
   std::string note;  // which terms are determined, and why others are not
 };
 

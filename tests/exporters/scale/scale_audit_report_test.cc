@@ -27,7 +27,6 @@ ScaleAudit FullAudit() {
   audit.parts = {{"hull", 0.0, 1, 0.004, 0.001}, {"sail", 0.0, 1, -0.004, std::nullopt}};
   audit.sizes = {{"", 0.05, 3, 0.002, 0.001}};
   audit.spread.print_um = UncertainValue{12.0, 2.0};
-  audit.spread.scale_error = UncertainValue{0.001, 0.0005};
   audit.spread.note = "print only";
   audit.distances = {{{4, 0, 9, 2, 2.0, 1e-3, false}, 2.0029, std::nullopt},
                      {{4, 0, 8, 0, 2.0, 1e-3, true}, std::nullopt, std::nullopt}};
