@@ -14,16 +14,6 @@ namespace {
 
 using ScalarSpline = Eigen::Spline<double, 1>;
 
-// One row of basis function values per parameter.
-Eigen::MatrixXd BasisValues(const Eigen::ArrayXd& knots, int degree,
-                            const std::vector<double>& parameters) {
-  Eigen::MatrixXd values(parameters.size(), knots.size() - degree - 1);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    values.row(i) = BasisRow(knots, degree, parameters[i], 0);
-  }
-  return values;
-}
-
 // sum_ij a_i b_j P_ij
 Eigen::Vector3d Combine(const SplineSurface& surface, const Eigen::VectorXd& basis_u,
                         const Eigen::VectorXd& basis_v) {
@@ -93,6 +83,15 @@ Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double paramet
   row.block(0, ScalarSpline::Span(parameter, degree, knot_row) - degree, order + 1, degree + 1) =
       ScalarSpline::BasisFunctionDerivatives(parameter, order, degree, knot_row).matrix();
   return row;
+}
+
+Eigen::MatrixXd BasisValues(const Eigen::ArrayXd& knots, int degree,
+                            const Eigen::ArrayXd& parameters) {
+  Eigen::MatrixXd values(parameters.size(), knots.size() - degree - 1);
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    values.row(i) = BasisRow(knots, degree, parameters[i], 0);
+  }
+  return values;
 }
 
 std::vector<double> SpanSamples(const Eigen::ArrayXd& knots) {
@@ -174,8 +173,11 @@ std::vector<SurfaceFoot> ProjectOnSurface(const SplineSurface& surface,
                                           const std::vector<Eigen::Vector3d>& points_in_shape_m) {
   const std::vector<double> us = SpanSamples(surface.knots_u);
   const std::vector<double> vs = SpanSamples(surface.knots_v);
-  const Eigen::MatrixXd basis_u = BasisValues(surface.knots_u, surface.degree_u, us);
-  const Eigen::MatrixXd basis_v = BasisValues(surface.knots_v, surface.degree_v, vs);
+  const auto array = [](const std::vector<double>& x) {
+    return Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  };
+  const Eigen::MatrixXd basis_u = BasisValues(surface.knots_u, surface.degree_u, array(us));
+  const Eigen::MatrixXd basis_v = BasisValues(surface.knots_v, surface.degree_v, array(vs));
   std::vector<Eigen::Vector3d> samples;
   for (std::size_t i = 0; i < us.size(); ++i) {
     for (std::size_t j = 0; j < vs.size(); ++j) {

@@ -31,6 +31,10 @@ struct SplineSurface {
 // row per order, one column per pole. Orders above the degree are zero.
 Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double parameter, int max_order);
 
+// The values alone, one row per parameter.
+Eigen::MatrixXd BasisValues(const Eigen::ArrayXd& knots, int degree,
+                            const Eigen::ArrayXd& parameters);
+
 // Equidistant parameters that sample the whole surface: six steps in each knot span.
 std::vector<double> SpanSamples(const Eigen::ArrayXd& knots);
 

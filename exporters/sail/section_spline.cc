@@ -27,15 +27,6 @@ Eigen::ArrayXd KnotsAt(const Eigen::ArrayXd& parameters, int degree) {
   return knots;
 }
 
-Eigen::MatrixXd DesignAt(const Eigen::ArrayXd& knots, int degree,
-                         const Eigen::ArrayXd& parameters) {
-  Eigen::MatrixXd design(parameters.size(), knots.size() - degree - 1);
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    design.row(i) = BasisRow(knots, degree, parameters[i], 0);
-  }
-  return design;
-}
-
 // Rows whose products with the poles have squares that sum to the integral of |f'''|^2. The third
 // derivative is constant within a knot span.
 Eigen::MatrixXd ThirdDerivativeRows(const Eigen::ArrayXd& knots) {
@@ -66,7 +57,7 @@ Smoother MakeSmoother(const CurveData& data) {
   smoother.knots = KnotsAt(smoother.parameters, kCubic);
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   smoother.design =
-      Eigen::kroneckerProduct(DesignAt(smoother.knots, kCubic, smoother.parameters), identity);
+      Eigen::kroneckerProduct(BasisValues(smoother.knots, kCubic, smoother.parameters), identity);
   smoother.origin = points.col(0);
   const Eigen::Matrix3Xd relative = points.colwise() - smoother.origin;
   smoother.values = Eigen::Map<const Eigen::VectorXd>(relative.data(), relative.size());
@@ -205,13 +196,13 @@ Interpolation MakeInterpolation(const Eigen::ArrayXd& parameters) {
   if (result.degree < kCubic) {  // one polynomial
     result.knots = KnotsAt(parameters.head(1), result.degree);
     result.poles_from_points =
-        DesignAt(result.knots, result.degree, parameters).inverse().transpose();
+        BasisValues(result.knots, result.degree, parameters).inverse().transpose();
     return result;
   }
   // Minimizes the penalty with the points as constraints by Lagrange multipliers:
   // [penalty  design^T; design  0] [poles; multipliers] = [0; points].
   result.knots = KnotsAt(parameters, kCubic);
-  const Eigen::MatrixXd design = DesignAt(result.knots, kCubic, parameters);
+  const Eigen::MatrixXd design = BasisValues(result.knots, kCubic, parameters);
   const Eigen::MatrixXd third = ThirdDerivativeRows(result.knots);
   const Eigen::MatrixXd penalty = third.transpose() * third;
   const Eigen::Index num_poles = design.cols();
