@@ -1,13 +1,14 @@
 #include "exporters/comparison_page/comparison_ply.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "exporters/formats/diverging_color.h"
 #include "exporters/formats/ply_writer.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -61,6 +62,15 @@ PlyElement<Face<kSize>> FaceElement() {
 }
 
 }  // namespace
+
+Eigen::Array3d DivergingColor(const std::optional<double>& distance_m, double limit_m) {
+  const Eigen::Array3d blue(33, 102, 172), white(247, 247, 247), red(178, 24, 43);
+  if (!distance_m) return Eigen::Array3d::Constant(128);
+  const double part = limit_m > 0 ? std::clamp(*distance_m / limit_m, -1.0, 1.0) : 0.0;
+  const Eigen::Array3d& end = part < 0 ? blue : red;
+  const Eigen::Array3d color = white + std::abs(part) * (end - white);
+  return color.round();
+}
 
 void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> color_limit_m,
                         std::ostream& out) {

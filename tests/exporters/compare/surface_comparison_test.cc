@@ -8,7 +8,6 @@
 
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/comparison_page/comparison_ply.h"
-#include "exporters/formats/diverging_color.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"
 
