@@ -113,10 +113,6 @@ TriangleMesh ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);
   const std::string extension = LowerExtension(path);
   const bool is_step = extension == ".step" || extension == ".stp";
-  if (!is_step && extension != ".iges" && extension != ".igs") {
-    throw InputError(
-        fmt::format("{}: unknown extension; expected .step, .stp, .iges or .igs", path.string()));
-  }
   const CadSession session;
   try {
     const TopoDS_Shape shape = is_step ? ReadStep(path) : ReadIges(path);
