@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "importer/base/error.h"
@@ -13,11 +13,10 @@
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_model.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
-
-using testing::HasSubstr;
 
 // A reader of its own, after AliceVision's jsonIO.cpp and camera/*.cpp: nothing of velamap's
 // cameras and poses.
@@ -215,13 +214,8 @@ TEST(AliceVisionScene, ARationalCameraIsRefused) {
   for (int i = 9; i < 12; ++i) {
     Camera camera = CamerasOfAliceVision().back();
     camera.params.at(i) = 0.01;
-    try {
-      AliceVisionText(ModelSeenBy(camera));
-      ADD_FAILURE() << "no error for parameter " << i;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("camera 1: FULL_OPENCV"));
-      EXPECT_THAT(error.what(), HasSubstr("leave out --alicevision"));
-    }
+    ExpectThrows<InputError>([&] { AliceVisionText(ModelSeenBy(camera)); },
+                             {"camera 1: FULL_OPENCV", "leave out --alicevision"});
   }
 }
 

@@ -16,6 +16,7 @@
 #include "tests/exporters/formats/cad_names.h"
 #include "tests/exporters/formats/mesh_area.h"
 #include "tests/exporters/sail/example_surface.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/scoped_date.h"
 #include "tests/support/temp_dir.h"
 
@@ -216,12 +217,11 @@ TEST(Cad, UnwritableOutputIsNamedAndNothingIsLeft) {
   WriteText(dir / "file", "in the way");
   const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
   const auto path = dir / "file" / "sail.step";
-  try {
-    WriteFileAtomically(path, [&](std::ostream& out) { WriteStep(surface, "sail", out); });
-    ADD_FAILURE() << "no InputError";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("file: cannot be written"));
-  }
+  ExpectThrows<InputError>(
+      [&] {
+        WriteFileAtomically(path, [&](std::ostream& out) { WriteStep(surface, "sail", out); });
+      },
+      {"file: cannot be written"});
 }
 
 TEST(Cad, FullStreamIsNoBrokenInvariant) {

@@ -1,16 +1,15 @@
 #include "exporters/scale/metric_scale.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
-
-using testing::HasSubstr;
 
 // Enlarges a marker about its first corner, like a misdetection.
 void ResizeMarker(int marker_id, double factor, Model* model) {
@@ -96,24 +95,16 @@ TEST(MetricScale, AMarkerInOnePointGivesNoScale) {
 TEST(MetricScale, WithoutAWholeMarkerTheReasonIsGiven) {
   Model model;
   for (const Point3DId id : {11, 12, 13, 27}) model.points3D[id] = {};
-  try {
-    EstimateScale(model, ExampleLayout());
-    FAIL() << "no error";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no marker of the model has all four corners"));
-    EXPECT_THAT(error.what(), HasSubstr("4 points, 3 of them marker corners"));
-  }
+  ExpectThrows<DataError>(
+      [&] { EstimateScale(model, ExampleLayout()); },
+      {"no marker of the model has all four corners", "4 points, 3 of them marker corners"});
 }
 
 TEST(MetricScale, PointsWithForeignIdsAreExplained) {
   Model model;
   for (const Point3DId id : {15, 16, 17, 18}) model.points3D[id] = {};
-  try {
-    EstimateScale(model, ExampleLayout());
-    FAIL() << "no error";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("10 * marker id + corner"));
-  }
+  ExpectThrows<DataError>([&] { EstimateScale(model, ExampleLayout()); },
+                          {"10 * marker id + corner"});
 }
 
 TEST(MetricScale, SigmaIsTheStandardErrorOfTheMean) {

@@ -9,12 +9,12 @@
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 MarkerShape Transformed(const Sim3& b_from_a, MarkerShape shape) {
@@ -197,12 +197,8 @@ TEST(CompareShapes, TooFewCommonCornersAreSaid) {
   reference.markers = {SquareMarker(2, 0.1), SquareMarker(3, 0.1)};
   EXPECT_EQ(CompareShapes(shape, reference).num_points, 4);
   for (const int corner : {0, 1, 2}) reference.markers[0].x_in_shape_m[corner].reset();
-  try {
-    CompareShapes(shape, reference);
-    FAIL() << "no error";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("2 marker corners in common; an alignment needs 3"));
-  }
+  ExpectThrows<DataError>([&] { CompareShapes(shape, reference); },
+                          {"2 marker corners in common; an alignment needs 3"});
 }
 
 TEST(CompareShapes, CornersInOnePointAreSaid) {
