@@ -12,7 +12,6 @@
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
 #include "importer/geometry/units.h"
-#include "importer/text/csv.h"
 #include "importer/text/markup.h"
 
 namespace velamap {

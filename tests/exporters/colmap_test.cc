@@ -10,7 +10,6 @@
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
-#include "reconstruct/model/reprojection.h"
 #include "tests/exporters/example_model.h"
 #include "tests/support/export_shape.h"
 #include "tests/support/temp_dir.h"

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "exporters/scale/metric_shape.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/support/export_shape.h"

@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "exporters/compare/comparison_sigma.h"
 #include "exporters/comparison_page/comparison_words.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/support/temp_dir.h"

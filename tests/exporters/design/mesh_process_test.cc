@@ -6,10 +6,8 @@
 
 #include "exporters/design/mesh_parser.h"
 #include "exporters/formats/cad_writer.h"
-#include "exporters/formats/mesh_writer.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
-#include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"

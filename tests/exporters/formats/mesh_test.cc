@@ -13,7 +13,6 @@
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/formats/mesh_writer.h"
 #include "importer/base/error.h"
-#include "tests/exporters/comma_locale.h"
 #include "tests/exporters/formats/mesh_area.h"
 #include "tests/exporters/formats/ply_reader.h"
 #include "tests/exporters/sail/example_surface.h"

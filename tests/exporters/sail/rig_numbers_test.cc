@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "exporters/sail/section.h"
-#include "exporters/shape/shape_transform.h"
 #include "importer/geometry/units.h"
 #include "tests/exporters/sail/sail_shapes.h"
 

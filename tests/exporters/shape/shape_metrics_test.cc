@@ -7,7 +7,6 @@
 
 #include "exporters/scale/metric_shape.h"
 #include "importer/base/error.h"
-#include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"
 #include "tests/support/error_matchers.h"
 
