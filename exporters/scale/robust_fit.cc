@@ -94,7 +94,6 @@ std::optional<RobustFit> FitRobustly(const Eigen::MatrixXd& design, const Vector
     fit.sigmas_off = residuals.cwiseQuotient(total);
     const auto is_used = fit.sigmas_off.array().abs() <= kMaxRobustSigmas;
     weights = is_used.select(total.array().square().inverse(), 0.0);
-    fit.num_used = static_cast<int>(is_used.count());
     coefficients = Solve(design, values, weights);
     if (!coefficients) return std::nullopt;
   }
@@ -122,7 +121,6 @@ RobustMean FitMeanRobustly(const std::vector<double>& values, const std::vector<
   if (values.size() > 1 || sigmas[0] > 0) mean.sigma = std::sqrt(fit->covariance(0, 0));
   mean.excess_sigma = fit->excess_sigma;
   mean.sigmas_off.assign(fit->sigmas_off.data(), fit->sigmas_off.data() + size);
-  mean.num_used = fit->num_used;
   return mean;
 }
 

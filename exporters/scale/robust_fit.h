@@ -18,7 +18,6 @@ struct RobustFit {
   // Residual / sqrt(sigma^2 + excess_sigma^2) of each value. Values beyond kMaxRobustSigmas are
   // outliers, which the fit does not use.
   Eigen::VectorXd sigmas_off;
-  int num_used = 0;
 };
 
 constexpr double kMaxRobustSigmas = 3.0;
@@ -34,7 +33,6 @@ struct RobustMean {
   std::optional<double> sigma;  // of the mean; nothing for a single value without a sigma
   double excess_sigma = 0.0;
   std::vector<double> sigmas_off;
-  int num_used = 0;
 };
 
 // Fits a constant in the same way. `values` must not be empty.

@@ -19,7 +19,7 @@ TEST(RobustFit, AgreeingValuesHaveTheirMeanAndNoScatter) {
   const RobustMean mean = FitMeanRobustly({0.25, 0.25, 0.25}, {0, 0, 0});
   EXPECT_NEAR(mean.mean, 0.25, 1e-12);
   EXPECT_LT(mean.excess_sigma, 1e-9);
-  EXPECT_EQ(mean.num_used, 3);
+  for (const double off : mean.sigmas_off) EXPECT_LE(std::abs(off), kMaxRobustSigmas);
 }
 
 TEST(RobustFit, ShiftAndScaleGoThrough) {
@@ -42,7 +42,6 @@ TEST(RobustFit, OutliersMoveNothingAndAreMarked) {
   const RobustMean mean = FitMeanRobustly(values, std::vector<double>(40, 0.0));
   EXPECT_NEAR(mean.mean, clean.mean, 0.004);
   for (int i = 30; i < 40; ++i) EXPECT_GT(std::abs(mean.sigmas_off[i]), kMaxRobustSigmas);
-  EXPECT_LE(mean.num_used, 30);
 }
 
 TEST(RobustFit, ExcessIsWhatTheOwnSigmasDoNotExplain) {
@@ -93,7 +92,7 @@ TEST(RobustFit, ALineWithOutliersIsFound) {
   EXPECT_NEAR(fit->coefficients[1], -2e-8, 4e-10);
   EXPECT_NEAR(fit->excess_sigma, 1e-5, 4e-6);
   EXPECT_LT(std::sqrt(fit->covariance(1, 1)), 4e-10);
-  EXPECT_LE(fit->num_used, 35);
+  EXPECT_GE((fit->sigmas_off.array().abs() > kMaxRobustSigmas).count(), 5);
 }
 
 TEST(RobustFit, WhatIsNotDeterminedHasNoFit) {
