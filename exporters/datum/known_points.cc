@@ -265,7 +265,6 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
 FrameAttempt FrameOfKnownPoints(const KnownPointFit& fit) {
   if (!fit.known_from_shape) return {std::nullopt, fit.reason};
   ShapeFrame frame;
-  frame.kind = FrameKind::kKnownPoints;
   frame.frame_from_shape = *fit.known_from_shape;
   frame.name = "known points";
   int num_points = 0, num_coordinates = 0;

@@ -34,10 +34,9 @@ std::string WhichMissing(const MarkerShape& shape, const std::vector<int>& ids) 
                      fmt::join(missing, " "), missing.size() == 1 ? "was" : "were");
 }
 
-ShapeFrame MakeUpright(FrameKind kind, const Rigid3& frame_from_shape, const std::string& name,
+ShapeFrame MakeUpright(const Rigid3& frame_from_shape, const std::string& name,
                        const std::string& description) {
   ShapeFrame frame;
-  frame.kind = kind;
   frame.frame_from_shape = frame_from_shape;
   frame.name = name;
   frame.description = description;
@@ -56,7 +55,7 @@ FrameAttempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
   if (!SpanPlane(x, up)) {
     return {std::nullopt, fmt::format("markers {} lie on one line to within 3 degrees", names)};
   }
-  return {MakeUpright(FrameKind::kMarkers, FrameFromAxes(origin, x, up), "markers " + names,
+  return {MakeUpright(FrameFromAxes(origin, x, up), "markers " + names,
                       fmt::format("origin at marker {}, x to marker {}, z on the side of marker {}",
                                   ids[0], ids[1], ids[2])),
           ""};
@@ -94,7 +93,7 @@ FrameAttempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   const std::string without =
       missing.empty() ? "" : fmt::format(" without {}", fmt::join(missing, " "));
   return {MakeUpright(
-              FrameKind::kReferencePart, FrameFromAxes(axes->center, along(x, aft), along(z, up)),
+              FrameFromAxes(axes->center, along(x, aft), along(z, up)),
               "reference part " + part + by_facing + without,
               fmt::format("origin at the mean of the markers of '{}', x aft: {}, z up: {}", part,
                           names[static_cast<std::size_t>(x)], names[static_cast<std::size_t>(z)])),
@@ -135,8 +134,7 @@ FrameAttempt TryLines(const MarkerShape& shape, const Layout& layout) {
                     "of vertical ones from foot to head",
                     up_name, lines.back()->name, lowest.name)};
   }
-  return {MakeUpright(FrameKind::kLines, frame_from_shape,
-                      fmt::format("lines {} {}", lowest.name, up_name),
+  return {MakeUpright(frame_from_shape, fmt::format("lines {} {}", lowest.name, up_name),
                       fmt::format("origin at marker {}, the luff of line {}, x to marker {}, its "
                                   "leech, z up {} {}",
                                   lowest.marker_ids.front(), lowest.name, lowest.marker_ids.back(),

@@ -41,7 +41,6 @@
 namespace velamap {
 
 struct ShapeFrame {
-  FrameKind kind = FrameKind::kCamera;
   Rigid3 frame_from_shape;
   // Names everything that defines the frame: two results with the same name are in the same frame
   // if the named markers have not moved on the boat.

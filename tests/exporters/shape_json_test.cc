@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::Pair;
 
-const ShapeFrame kFrame = {FrameKind::kLines, {}, "lines h1 h2", "x aft", {"no hull"}, {}};
+const ShapeFrame kFrame = {{}, "lines h1 h2", "x aft", {"no hull"}, {}};
 
 std::string Text(const Model& model, const ShapeOrigin& origin, const DescribedFiles& files = {},
                  const Verdict* verdict = nullptr) {

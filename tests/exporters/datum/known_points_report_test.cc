@@ -27,7 +27,7 @@ TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
   EXPECT_EQ(attempt.frame.value().name, "known points 1 3 4 5.3 6:z");
   EXPECT_THAT(attempt.frame->description, HasSubstr("by 13 coordinates of 5 points; z"));
   const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, attempt);
-  EXPECT_EQ(frame.kind, FrameKind::kKnownPoints);
+  EXPECT_EQ(frame.name, attempt.frame->name);
   EXPECT_TRUE(frame.reasons.empty());
   EXPECT_EQ(FrameText(frame), frame.name + ": " + attempt.frame->description);
   // Another frame can still be asked for, and what is asked for is granted or refused.
@@ -50,7 +50,7 @@ TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
   MakeShape(3);
   AddCenters(2, 0.0);
   const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, FrameOfKnownPoints(Fit()));
-  EXPECT_EQ(frame.kind, FrameKind::kCamera);
+  EXPECT_EQ(frame.name, "camera");
   ASSERT_FALSE(frame.reasons.empty());
   EXPECT_EQ(frame.reasons[0], "not by known_points: 2 points are given; three are needed");
 }
