@@ -101,15 +101,13 @@ Json ShapeJson(const Comparison& comparison) {
   return json;
 }
 
-// A row of the table of numbers.
-bool AreOfOneRow(const SectionDifference& a, const SectionDifference& b) {
-  return a.part == b.part && a.section == b.section && a.number == b.number;
-}
-
+// The one in the same row of the table of numbers; null without one.
 const SectionDifference* FindDifference(const std::vector<SectionDifference>& differences,
                                         const SectionDifference& like) {
-  const auto it = std::find_if(differences.begin(), differences.end(),
-                               [&](const SectionDifference& d) { return AreOfOneRow(d, like); });
+  const auto it =
+      std::find_if(differences.begin(), differences.end(), [&](const SectionDifference& d) {
+        return d.part == like.part && d.section == like.section && d.number == like.number;
+      });
   return it == differences.end() ? nullptr : &*it;
 }
 

@@ -1,16 +1,8 @@
 #include "exporters/datum/datum_equations.h"
 
-#include <numeric>
-
 #include "importer/geometry/pose_step.h"
 
 namespace velamap {
-
-PointSet AllOf(const DatumPoints& points) {
-  PointSet all(points.points.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
-}
 
 DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
                          const Rigid3& known_from_centred) {

@@ -32,7 +32,6 @@ struct DatumPoints {
 
 // Ascending indices into DatumPoints::points.
 using PointSet = std::vector<std::size_t>;
-PointSet AllOf(const DatumPoints& points);
 
 // The equations of a set of points at a pose, in the order of the points and of x, y, z.
 struct DatumEquations {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -105,7 +106,8 @@ std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen
 
 std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& set,
                                      const Rigid3& known_from_centred) {
-  const PointSet all = AllOf(points);
+  PointSet all(points.points.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   const DatumEquations equations = Linearize(points, all, known_from_centred);
   const Eigen::MatrixXd covariance = ResidualCovariance(points, all, known_from_centred.rotation);
   std::vector<Eigen::Index> rows;

@@ -61,10 +61,6 @@ SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, cons
   return surface;
 }
 
-std::string Suffix(int surface_idx) {
-  return surface_idx == 0 ? "" : fmt::format("_{}", surface_idx + 1);
-}
-
 // The sections of a part as curves, and the centres of its whole markers as points.
 CadExtras ExtrasOf(const std::string& part, const SectionReport& report, const MarkerShape& shape) {
   CadExtras extras;
@@ -158,9 +154,10 @@ void WriteSailFiles(const SailShape& sail, const MarkerShape& shape, const Shape
   }
   for (std::size_t i = 0; i < sail.surfaces.size(); ++i) {
     const SailSurface& surface = sail.surfaces[i];
+    const std::string suffix = i == 0 ? "" : fmt::format("_{}", i + 1);
     WriteSurfaceFiles(surface, ExtrasOf(surface.part, sail.sections, shape),
-                      fmt::format("{} (frame: {})", surface.part, frame.name),
-                      Suffix(static_cast<int>(i)), options, folder);
+                      fmt::format("{} (frame: {})", surface.part, frame.name), suffix, options,
+                      folder);
   }
 }
 
