@@ -105,27 +105,24 @@ std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {
 }  // namespace
 
 std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
-  std::vector<KeyNumber> numbers = {MarkersNumber(input.metrics), ImagesNumber(input)};
-  if (input.model_metrics.error_px.count > 0) {
-    numbers.push_back(ErrorNumber(input.model_metrics.error_px));
-  }
-  if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
-  if (const auto dictionary = DictionaryNumber(input)) numbers.push_back(*dictionary);
-  if (const auto calibration = CalibrationNumber(input)) {
-    numbers.push_back(*calibration);
-  }
-  if (const auto steadiness = SteadinessNumber(input.steadiness)) numbers.push_back(*steadiness);
-  if (const auto shutter = RollingShutterNumber(input.uncertainty)) numbers.push_back(*shutter);
-  if (const auto camera = FoundCameraNumber(input.found_cameras)) numbers.push_back(*camera);
-  numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));
-  if (input.audit != nullptr) {
-    if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);
-  }
-  if (input.known_points != nullptr) {
-    if (const auto points = KnownPointsNumber(*input.known_points)) numbers.push_back(*points);
-  }
-  if (const auto precision = PrecisionNumber(input.shape)) numbers.push_back(*precision);
-  numbers.push_back(SizeNumber(input.shape));
+  std::vector<KeyNumber> numbers;
+  const auto add = [&numbers](const std::optional<KeyNumber>& number) {
+    if (number) numbers.push_back(*number);
+  };
+  add(MarkersNumber(input.metrics));
+  add(ImagesNumber(input));
+  if (input.model_metrics.error_px.count > 0) add(ErrorNumber(input.model_metrics.error_px));
+  if (input.metrics.area_error_percent.count > 0) add(AreaNumber(input.metrics));
+  add(DictionaryNumber(input));
+  add(CalibrationNumber(input));
+  add(SteadinessNumber(input.steadiness));
+  add(RollingShutterNumber(input.uncertainty));
+  add(FoundCameraNumber(input.found_cameras));
+  add(ScaleNumber(input.scale, input.audit, input.uncertainty));
+  if (input.audit != nullptr) add(DistancesNumber(*input.audit));
+  if (input.known_points != nullptr) add(KnownPointsNumber(*input.known_points));
+  add(PrecisionNumber(input.shape));
+  add(SizeNumber(input.shape));
   return numbers;
 }
 
