@@ -30,12 +30,12 @@ Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
   std::stable_sort(doubtful.begin(), doubtful.end(),
                    [](const KeyNumber& a, const KeyNumber& b) { return a.kind < b.kind; });
   VerdictReasons reasons;
+  std::set<std::string> said;  // the log repeats a warning for each step that meets it
   for (const KeyNumber& number : doubtful) {
+    said.insert(number.advice);
     reasons.Add(number.status, fmt::format("{}: {}{}{}", KeyNumberName(number.kind), number.value,
                                            number.advice.empty() ? "" : "; ", number.advice));
   }
-  std::set<std::string> said;  // the log repeats a warning for each step that meets it
-  for (const KeyNumber& number : doubtful) said.insert(number.advice);
   for (const std::string& warning : warnings) {
     if (said.insert(warning).second) reasons.Check(warning);
   }
