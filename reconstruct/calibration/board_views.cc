@@ -1,7 +1,6 @@
 #include "reconstruct/calibration/board_views.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

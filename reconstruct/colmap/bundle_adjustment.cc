@@ -1,12 +1,7 @@
 #include "reconstruct/colmap/bundle_adjustment.h"
 
-#include <stdlib.h>
-
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,8 +18,6 @@
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Temporary folder for COLMAP's input and output, removed on destruction.
 class ScratchFolder {

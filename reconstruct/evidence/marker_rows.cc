@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "importer/base/statistics.h"
 #include "reconstruct/evidence/marker_clusters.h"
 #include "reconstruct/evidence/marker_links.h"
 

@@ -3,8 +3,6 @@
 #include <limits>
 #include <unordered_map>
 
-#include "importer/base/error.h"
-
 namespace velamap {
 
 std::vector<SeenPoint> SeenPointsOf(const Model& model, const ModelImage& image) {

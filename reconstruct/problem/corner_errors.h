@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "importer/database/colmap_database.h"
-#include "reconstruct/model/model.h"
 #include "reconstruct/problem/corner_velocities.h"
 
 namespace velamap {

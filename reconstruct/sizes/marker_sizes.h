@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/geometry/point_covariance.h"
 #include "reconstruct/problem/marker_problem.h"
 #include "reconstruct/problem/normal_equations.h"
 

@@ -8,7 +8,6 @@
 
 #include "importer/base/error.h"
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/model/gauge.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
 #include "tests/support/error_matchers.h"

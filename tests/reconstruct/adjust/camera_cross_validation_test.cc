@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "reconstruct/problem/corner_velocities.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {

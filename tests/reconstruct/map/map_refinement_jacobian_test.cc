@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "importer/geometry/pose_step.h"
 #include "reconstruct/geometry/marker_pose.h"
 #include "reconstruct/map/map_refinement.h"
 #include "tests/support/gradient_check.h"

@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 
 #include "reconstruct/colmap/colmap_runner.h"
-#include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 #include "tests/reconstruct/sheet_model.h"

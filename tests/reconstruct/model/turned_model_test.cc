@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "importer/camera/turned_camera.h"
 #include "reconstruct/model/reprojection.h"
 #include "tests/reconstruct/scene_model.h"
 

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "importer/base/error.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "tests/reconstruct/scene_model.h"
 

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/problem/marker_problem.h"
-#include "reconstruct/sizes/marker_sizes.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
 
