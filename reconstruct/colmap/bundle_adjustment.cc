@@ -19,22 +19,11 @@
 namespace velamap {
 namespace {
 
-// Temporary folder for COLMAP's input and output, removed on destruction.
-class ScratchFolder {
- public:
-  ScratchFolder() { CreateFolders(OutputPath()); }
-
-  std::string InputPath() const { return folder_.path() / "in"; }
-  std::string OutputPath() const { return folder_.path() / "out"; }
-
- private:
-  const TemporaryFolder folder_;
-};
-
 std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& options,
-                                                 const ScratchFolder& scratch) {
-  std::vector<std::string> arguments = {"bundle_adjuster", "--input_path", scratch.InputPath(),
-                                        "--output_path", scratch.OutputPath()};
+                                                 const std::string& input_path,
+                                                 const std::string& output_path) {
+  std::vector<std::string> arguments = {"bundle_adjuster", "--input_path", input_path,
+                                        "--output_path", output_path};
   const auto add = [&](const std::string& name, const std::string& value) {
     // COLMAP 4 changed the prefix of the solver's options.
     for (const char* prefix : {"BundleAdjustment.", "BundleAdjustmentCeres."}) {
@@ -141,14 +130,17 @@ Model ReadResult(const std::string& path, const std::string& log_path) {
 }
 
 void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_path, Model* model) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
+  const std::string input_path = scratch.path() / "in", output_path = scratch.path() / "out";
+  CreateFolders(output_path);
   OrderForGauge(model->images.front().image_id, model);
-  WriteModel(*model, scratch.InputPath(), ModelFormat::kBinary);
-  RunColmap(options.colmap_path, BundleAdjusterArguments(options, scratch), log_path,
+  WriteModel(*model, input_path, ModelFormat::kBinary);
+  RunColmap(options.colmap_path, BundleAdjusterArguments(options, input_path, output_path),
+            log_path,
             {std::chrono::duration<double, std::ratio<60>>(options.time_limit_min),
              OptionName(&BundleAdjustmentOptions::time_limit_min)});
 
-  const Model result = ReadResult(scratch.OutputPath(), log_path);
+  const Model result = ReadResult(output_path, log_path);
   CheckStructure(options, *model, result, log_path);
   const double rms_before_px = RmsError(*model);
   CopyGeometry(result, model);
