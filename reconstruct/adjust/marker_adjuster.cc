@@ -62,8 +62,7 @@ MarkerAdjustmentSummary MarkerAdjuster::TakeSummary() {
 }
 
 void MarkerAdjuster::PrepareSeed() {
-  summary_.error_before_px =
-      SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
+  summary_.error_before_px = SummarizeReprojectionErrors(solution_.model);
   RemoveSeedOutliers({}, &solution_.model, &summary_.removed);
   RemoveUnderconstrainedParts();
   TransformModel({MetresPerUnit(MakeMarkerState(solution_.model, *solution_.layout)),
@@ -244,7 +243,7 @@ void MarkerAdjuster::Finish() {
     WarnOfFoldedCameras(&solution_);
   }
   UpdatePointErrors(&solution_.model);
-  summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
+  summary_.error_after_px = SummarizeReprojectionErrors(solution_.model);
   CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px,
                  !solution_.options.find_camera);
   const std::vector<std::string> weaknesses =

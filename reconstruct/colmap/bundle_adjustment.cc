@@ -177,7 +177,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   const std::size_t num_images = model->images.size();
   Model adjusted = *model;
   BundleAdjustmentSummary summary;
-  summary.error_before_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
+  summary.error_before_px = SummarizeReprojectionErrors(adjusted);
   if (options.remove_outliers) RemoveSeedOutliers(options, &adjusted, &summary.removed);
   while (true) {
     RemoveUnderconstrained(options.min_track_length, &adjusted, &summary.removed_images);
@@ -190,7 +190,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
     if (num_changes == 0) break;
   }
   UpdatePointErrors(&adjusted);
-  summary.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
+  summary.error_after_px = SummarizeReprojectionErrors(adjusted);
   CheckMeanError(summary.error_after_px.mean, options.max_mean_error_px, true);
   *model = std::move(adjusted);
   return summary;

@@ -38,10 +38,11 @@ std::vector<ObservationError> ComputeReprojectionErrors(const Model& model) {
   return errors;
 }
 
-Statistics SummarizeReprojectionErrors(const std::vector<ObservationError>& errors) {
+Statistics SummarizeReprojectionErrors(const Model& model) {
   std::vector<double> errors_px;
-  errors_px.reserve(errors.size());
-  for (const ObservationError& error : errors) errors_px.push_back(error.error_px);
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
+    errors_px.push_back(error.error_px);
+  }
   return ComputeStatistics(std::move(errors_px));
 }
 

@@ -28,7 +28,7 @@ std::vector<SeenPoint> SeenPointsOf(const Model& model, const ModelImage& image)
 // Returns one entry for each observation, ordered by point, then by position in the track.
 std::vector<ObservationError> ComputeReprojectionErrors(const Model& model);
 
-Statistics SummarizeReprojectionErrors(const std::vector<ObservationError>& errors);
+Statistics SummarizeReprojectionErrors(const Model& model);
 
 // Sets every point's mean_error_px. COLMAP before 3.13 does not update it.
 void UpdatePointErrors(Model* model);

@@ -24,7 +24,7 @@ TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
   const Model model = MakeSeedModel(registration, DatabaseImages(scene), SceneCameras(scene));
   CheckModel(model);
   EXPECT_EQ(model.images.front().image_id, registration.central_image_id);
-  EXPECT_LT(SummarizeReprojectionErrors(ComputeReprojectionErrors(model)).max, 1e-5);
+  EXPECT_LT(SummarizeReprojectionErrors(model).max, 1e-5);
   std::size_t num_observations = 0, num_seen = 0;
   for (const auto& [id, point] : model.points3D) num_observations += point.track.size();
   for (const FrameDetections& frame : scene.frames) {

@@ -56,7 +56,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
   WriteFormatted(out, "central_image: {}\n", seed.registration.central_image_name);
   WriteFormatted(out, "markers: {}\n", seed.registration.shape.size());
   WriteFormatted(out, "reprojection_error_px: {}\n",
-                 ErrorText(SummarizeReprojectionErrors(ComputeReprojectionErrors(seed.model))));
+                 ErrorText(SummarizeReprojectionErrors(seed.model)));
   WriteFormatted(out, "model_path: {}\n", paths.output_path);
   WriteFormatted(out, "registration_path: {}\n", paths.registration_path);
 }

@@ -42,9 +42,7 @@ class WarmStartTest : public testing::Test {
     return AdjustWithMarkers({}, scene_.layout, CornerErrorsOf(images_), model);
   }
 
-  static double Error(const Model& model) {
-    return SummarizeReprojectionErrors(ComputeReprojectionErrors(model)).median;
-  }
+  static double Error(const Model& model) { return SummarizeReprojectionErrors(model).median; }
 
   SyntheticScene scene_;
   std::vector<DatabaseImage> images_;

@@ -15,7 +15,7 @@ TEST(ComputeReprojectionErrors, ExactModelHasNone) {
     SheetOptions options;
     options.camera_model = camera_model;
     const Model model = MakeSheetModel(options);
-    const Statistics statistics = SummarizeReprojectionErrors(ComputeReprojectionErrors(model));
+    const Statistics statistics = SummarizeReprojectionErrors(model);
     EXPECT_EQ(statistics.count, 9 * 80);
     EXPECT_LT(statistics.max, 1e-9);
   }
