@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -180,15 +181,15 @@ bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
 }
 
 std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoints& shape,
-                                         const Layout& layout,
-                                         const FrameAlignmentOptions& options) {
-  const AlignmentProblem problem(FindShared(frame, shape, layout, options.ransac_max_error_m),
-                                 options.min_num_inliers);
+                                         const Layout& layout, const RegistrationOptions& options) {
+  constexpr int kNumSamples = 300;
+  const AlignmentProblem problem(
+      FindShared(frame, shape, layout, options.thesis.ransac_max_error_m), options.min_num_inliers);
   if (problem.NumMarkers() < options.min_num_inliers) return std::nullopt;
   // The thesis draws a fixed number of samples.
-  const int num_samples = problem.UseCenters() ? options.max_num_trials : 0;
+  const int num_samples = problem.UseCenters() ? kNumSamples : 0;
   std::vector<AlignmentHypothesis> hypotheses =
-      Ransac({num_samples, num_samples, options.random_seed}, problem,
+      Ransac({num_samples, num_samples, static_cast<std::uint32_t>(options.random_seed)}, problem,
              problem.UseCenters() ? std::vector<Rigid3>() : problem.FromSingleMarkers());
   if (hypotheses.empty() || !problem.HasEnoughInliers(hypotheses.front())) return std::nullopt;
   const AlignmentHypothesis best =

@@ -37,9 +37,8 @@ std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, FrameN
 // and of the frames found so far.
 struct Search {
   const std::vector<FrameShape>& frames;
-  const FrameSearchOptions& options;
   const Layout& layout;
-  const FrameAlignmentOptions& alignment;
+  const RegistrationOptions& options;
   ShapePoints central;
   ShapePoints extended;
 
@@ -55,7 +54,7 @@ std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoint
   const auto [begin, end] = FramesInWindow(search.frames, first_number, last_number);
   for (int idx = begin; idx < end; ++idx) {
     auto candidate = AlignFrame(search.frames[static_cast<std::size_t>(idx)], shape, search.layout,
-                                search.alignment);
+                                search.options);
     if (!candidate) continue;
     const std::size_t num_inliers = candidate->inlier_ids.size();
     const bool better = !best || num_inliers > best->alignment.inlier_ids.size() ||
@@ -70,7 +69,7 @@ std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoint
 // Walks from the central frame in one direction (+1 or -1).
 void SearchOneSide(int central_idx, int direction, Search* search,
                    std::vector<SelectedFrame>* selected) {
-  const FrameSearchOptions& options = search->options;
+  const ThesisRegistrationOptions& options = search->options.thesis;
   const FrameNumber skip = options.skip, neighborhood = options.neighborhood;
   const FrameNumber first_number = *search->frames.front().frame_number;
   const FrameNumber last_number = *search->frames.back().frame_number;
@@ -84,7 +83,7 @@ void SearchOneSide(int central_idx, int direction, Search* search,
     const FrameNumber furthest = target + direction * neighborhood;
     const auto [first, last] = std::minmax(nearest, furthest);
     auto best = BestInWindow(*search, search->central, first, last, target);
-    if (!best && options.extends_shape) {
+    if (!best && !options.IsExact()) {
       best = BestInWindow(*search, search->extended, first, last, target);
     }
     if (!best) {
@@ -142,8 +141,9 @@ CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
                         " times in the other images, more than any other image's"};
 }
 
-FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side) {
-  FrameSearchOptions fitted = options;
+ThesisRegistrationOptions FitToVideo(const ThesisRegistrationOptions& options,
+                                     int num_frames_on_side) {
+  ThesisRegistrationOptions fitted = options;
   // Rounded to nearest: one frame less on a side costs less than leaving half a clip unused.
   const FrameNumber num_frames = std::max(options.num_frames, 1);
   fitted.skip = static_cast<int>(
@@ -154,7 +154,8 @@ FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_
   return fitted;
 }
 
-std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options) {
+std::pair<int, int> ReachableFrames(int central_frame_number,
+                                    const ThesisRegistrationOptions& options) {
   constexpr FrameNumber kLastNumber = std::numeric_limits<int>::max();
   const FrameNumber reach = options.num_frames * (FrameNumber{options.skip} + options.neighborhood);
   return {static_cast<int>(std::max<FrameNumber>(central_frame_number - reach, 0)),
@@ -162,7 +163,7 @@ std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchO
 }
 
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
-                                     const FrameSearchOptions& options) {
+                                     const ThesisRegistrationOptions& options) {
   VELAMAP_CHECK(!frames.empty());
   const FrameNumber first_number = *frames.front().frame_number;
   const FrameNumber last_number = *frames.back().frame_number;
@@ -200,13 +201,13 @@ CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
 }
 
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
-                                        const FrameSearchOptions& search, const Layout& layout,
-                                        const FrameAlignmentOptions& alignment) {
-  VELAMAP_CHECK(search.num_frames >= 0 && search.skip >= 1 && search.neighborhood >= 0);
+                                        const Layout& layout, const RegistrationOptions& options) {
+  const ThesisRegistrationOptions& thesis = options.thesis;
+  VELAMAP_CHECK(thesis.num_frames >= 0 && thesis.skip >= 1 && thesis.neighborhood >= 0);
   const ShapePoints central = PointsOf(frames[static_cast<std::size_t>(central_idx)]);
   std::vector<SelectedFrame> selected;
   for (const int direction : {-1, 1}) {
-    Search one_side{frames, search, layout, alignment, central, central};
+    Search one_side{frames, layout, options, central, central};
     SearchOneSide(central_idx, direction, &one_side, &selected);
   }
   std::sort(selected.begin(), selected.end(), [](const SelectedFrame& a, const SelectedFrame& b) {

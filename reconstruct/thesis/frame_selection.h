@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,27 +24,20 @@ struct CentralFrame {
 // equal.
 CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames);
 
-struct FrameSearchOptions {
-  int num_frames = 20;   // n
-  int skip = 10;         // s
-  int neighborhood = 5;  // m
-  // Whether a window in which no frame aligns with the central one is aligned with the markers of
-  // all frames found so far. The thesis does not.
-  bool extends_shape = true;
-};
-
 // Adapts the parameters to a video with `num_frames_on_side` frames on the longer side of the
 // central one: reduces the skip until n frames fit there, and the neighbourhood until the windows
 // do not overlap.
-FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side);
+ThesisRegistrationOptions FitToVideo(const ThesisRegistrationOptions& options,
+                                     int num_frames_on_side);
 
 // First and last frame number that the search can visit from a central frame: n skips, each of
 // which may end m frames further. Limited to 0 and the largest int.
-std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options);
+std::pair<int, int> ReachableFrames(int central_frame_number,
+                                    const ThesisRegistrationOptions& options);
 
 // The frame that shares the most markers with the windows that the search visits around it.
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
-                                     const FrameSearchOptions& options);
+                                     const ThesisRegistrationOptions& options);
 
 struct SelectedFrame {
   int frame_idx = 0;
@@ -54,11 +46,10 @@ struct SelectedFrame {
 
 // Thesis section 3.4.1: skips s frames from the central frame, takes the frame within m frames of
 // there that has the most RANSAC inliers, and continues from it, n times on each side. Where no
-// frame of a window aligns with the central frame, the window is aligned with the markers of all
-// frames found so far if extends_shape; if that fails too, the window is skipped. `frames` are
-// sorted by frame_number. The result does not contain the central frame.
+// frame of a window aligns with the central frame, the window is skipped; ThesisVariant::kRobust
+// first aligns it with the markers of all frames found so far. `frames` are sorted by frame_number.
+// The result does not contain the central frame.
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
-                                        const FrameSearchOptions& search, const Layout& layout,
-                                        const FrameAlignmentOptions& alignment);
+                                        const Layout& layout, const RegistrationOptions& options);
 
 }  // namespace velamap

@@ -35,11 +35,9 @@ std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationS
 }
 
 void AverageShape(RegistrationState* state) {
-  const ShapeAveragingOptions averaging{state->options.thesis.num_mean_iterations,
-                                        state->options.thesis.mean_sigma_m};
   state->shape.clear();
   for (const auto& [marker_id, solutions] : CollectSolutions(*state)) {
-    state->shape.emplace(marker_id, AverageMarker(solutions, averaging));
+    state->shape.emplace(marker_id, AverageMarker(solutions, state->options.thesis));
   }
 }
 
@@ -50,14 +48,6 @@ void StartAtCentralFrame(int central_idx, RegistrationState* state) {
 }
 
 }  // namespace
-
-FrameAlignmentOptions RegistrationState::AlignmentOptions() const {
-  FrameAlignmentOptions alignment;
-  alignment.ransac_max_error_m = options.thesis.ransac_max_error_m;
-  alignment.min_num_inliers = options.min_num_inliers;
-  alignment.random_seed = static_cast<std::uint32_t>(options.random_seed);
-  return alignment;
-}
 
 int RegistrationState::NumRegistered() const {
   return static_cast<int>(std::count_if(alignments.begin(), alignments.end(),
@@ -71,8 +61,7 @@ void GrowFromCentralFrame(int central_idx, RegistrationState* state) {
     std::size_t most_inliers = 0;
     for (std::size_t idx = 0; idx < state->frames.size(); ++idx) {
       if (state->alignments[idx]) continue;
-      auto alignment =
-          AlignFrame(state->frames[idx], state->shape, state->layout, state->AlignmentOptions());
+      auto alignment = AlignFrame(state->frames[idx], state->shape, state->layout, state->options);
       if (!alignment) continue;
       most_inliers = std::max(most_inliers, alignment->inlier_ids.size());
       candidates.emplace(idx, std::move(*alignment));
@@ -88,12 +77,10 @@ void GrowFromCentralFrame(int central_idx, RegistrationState* state) {
   }
 }
 
-void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, RegistrationState* state,
-                       std::vector<std::string>* notes) {
+void SearchInTimeOrder(int central_idx, RegistrationState* state, std::vector<std::string>* notes) {
   StartAtCentralFrame(central_idx, state);
-  auto selected_frames =
-      SearchFrames(state->frames, central_idx, search, state->layout, state->AlignmentOptions());
-  const std::size_t num_wanted = 2 * static_cast<std::size_t>(search.num_frames);
+  auto selected_frames = SearchFrames(state->frames, central_idx, state->layout, state->options);
+  const std::size_t num_wanted = 2 * static_cast<std::size_t>(state->options.thesis.num_frames);
   if (selected_frames.size() < num_wanted) {
     notes->push_back("the search found " + std::to_string(selected_frames.size()) + " of " +
                      std::to_string(num_wanted) +
@@ -110,8 +97,7 @@ void RefineShape(RegistrationState* state) {
     for (std::size_t idx = 0; idx < state->frames.size(); ++idx) {
       auto& alignment = state->alignments[idx];
       if (!alignment) continue;
-      alignment =
-          AlignFrame(state->frames[idx], state->shape, state->layout, state->AlignmentOptions());
+      alignment = AlignFrame(state->frames[idx], state->shape, state->layout, state->options);
     }
     AverageShape(state);
   }

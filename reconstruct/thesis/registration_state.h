@@ -15,13 +15,12 @@ namespace velamap {
 
 struct RegistrationState {
   const Layout& layout;
-  const RegistrationOptions& options;
-  const std::vector<FrameShape>& frames;                  // in canonical order
-  const std::vector<const Camera*>& cameras;              // by frame_idx
+  RegistrationOptions options;                // skip and neighborhood may be adapted to the video
+  const std::vector<FrameShape>& frames;      // in canonical order
+  const std::vector<const Camera*>& cameras;  // by frame_idx
   std::vector<std::optional<FrameAlignment>> alignments;  // by frame_idx; none: not registered
   ShapePoints shape;                                      // mean over the registered frames
 
-  FrameAlignmentOptions AlignmentOptions() const;
   int NumRegistered() const;
 };
 
@@ -31,8 +30,7 @@ void GrowFromCentralFrame(int central_idx, RegistrationState* state);
 
 // For videos: the thesis's search around the central frame. Adds a note if it finds fewer frames
 // than requested.
-void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, RegistrationState* state,
-                       std::vector<std::string>* notes);
+void SearchInTimeOrder(int central_idx, RegistrationState* state, std::vector<std::string>* notes);
 
 // Alternates between aligning every registered frame with the mean shape and averaging the shape. A
 // frame that cannot be aligned any more is dropped.

@@ -42,8 +42,8 @@ MarkerPoints FindMedoid(const std::vector<MarkerSolutions>& frames) {
 }  // namespace
 
 MarkerPoints AverageMarker(const std::vector<MarkerSolutions>& frames,
-                           const ShapeAveragingOptions& options) {
-  VELAMAP_CHECK(!frames.empty() && options.sigma_m > 0);
+                           const ThesisRegistrationOptions& options) {
+  VELAMAP_CHECK(!frames.empty() && options.mean_sigma_m > 0);
   const MarkerPoints medoid = FindMedoid(frames);
   std::vector<const MarkerPoints*> chosen;
   for (const MarkerSolutions& solutions : frames) chosen.push_back(&Nearest(solutions, medoid));
@@ -54,11 +54,12 @@ MarkerPoints AverageMarker(const std::vector<MarkerSolutions>& frames,
     for (const MarkerPoints* points : chosen) {
       mean[point] += (*points)[point] / static_cast<double>(chosen.size());
     }
-    for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
+    for (int iteration = 0; iteration < options.num_mean_iterations; ++iteration) {
       Eigen::Vector3d weighted_sum = Eigen::Vector3d::Zero();
       double sum_of_weights = 0.0;
       for (const MarkerPoints* points : chosen) {
-        const double weight = std::exp(-((*points)[point] - mean[point]).norm() / options.sigma_m);
+        const double weight =
+            std::exp(-((*points)[point] - mean[point]).norm() / options.mean_sigma_m);
         weighted_sum += weight * (*points)[point];
         sum_of_weights += weight;
       }

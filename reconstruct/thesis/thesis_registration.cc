@@ -84,23 +84,24 @@ void PoseByCenters(const FrameShape& frame, const ShapePoints& shape, Registered
 }
 
 // Reduces the skip if the video is too short for the search, and adds a note.
-FrameSearchOptions FitSearch(const std::vector<FrameShape>& frames,
-                             const std::optional<CentralFrame>& central,
-                             const FrameSearchOptions& search, std::vector<std::string>* notes) {
+void FitSearch(const std::optional<CentralFrame>& central, RegistrationState* state,
+               std::vector<std::string>* notes) {
+  const std::vector<FrameShape>& frames = state->frames;
+  ThesisRegistrationOptions& search = state->options.thesis;
   const int first = *frames.front().frame_number, last = *frames.back().frame_number;
   int num_frames_on_side = (last - first) / 2;
   if (central) {
     const int number = *frames[static_cast<std::size_t>(central->frame_idx)].frame_number;
     num_frames_on_side = std::max(number - first, last - number);
   }
-  const FrameSearchOptions fitted = FitToVideo(search, num_frames_on_side);
+  const ThesisRegistrationOptions fitted = FitToVideo(search, num_frames_on_side);
   if (fitted.skip != search.skip) {
     notes->push_back("the video is too short for " + std::to_string(search.num_frames) +
                      " skips of " + std::to_string(search.skip) + " frames: skip " +
                      std::to_string(fitted.skip) + " and neighborhood " +
                      std::to_string(fitted.neighborhood) + " are used");
   }
-  return fitted;
+  search = fitted;
 }
 
 void ExplainWhyNotRegistered(const RegistrationState& state, const FrameShape& shape,
@@ -141,13 +142,11 @@ CentralFrame RegisterFromCentralFrame(const std::vector<const DatabaseImage*>& o
     GrowFromCentralFrame(central->frame_idx, state);
     return *central;
   }
-  FrameSearchOptions search{options.thesis.num_frames, options.thesis.skip,
-                            options.thesis.neighborhood, !options.thesis.IsExact()};
   if (options.thesis.num_frames > 0 && !options.thesis.IsExact()) {
-    search = FitSearch(state->frames, central, search, notes);
+    FitSearch(central, state, notes);
   }
-  if (!central) central = ChooseCentralVideoFrame(state->frames, search);
-  SearchInTimeOrder(central->frame_idx, search, state, notes);
+  if (!central) central = ChooseCentralVideoFrame(state->frames, options.thesis);
+  SearchInTimeOrder(central->frame_idx, state, notes);
   return *central;
 }
 

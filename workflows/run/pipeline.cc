@@ -94,9 +94,7 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
       registration.method == RegistrationMethod::kGlobal) {
     return video;
   }
-  const auto [first, last] = ReachableFrames(
-      number,
-      {registration.thesis.num_frames, registration.thesis.skip, registration.thesis.neighborhood});
+  const auto [first, last] = ReachableFrames(number, registration.thesis);
   VideoOptions narrowed = video;
   // Whole steps from the first frame, so that the same frames are read.
   const int skipped = std::max(0, first - video.first_frame);

@@ -86,7 +86,7 @@ TEST_F(FrameAlignmentTest, WrongMarkersWithoutConsensusGiveNothing) {
       }
     }
   }
-  FrameAlignmentOptions options;
+  RegistrationOptions options;
   options.min_num_inliers = 8;
   EXPECT_FALSE(AlignFrame(frames_[1], world_, scene_.layout, options));
 }

@@ -15,6 +15,13 @@ SyntheticScene Clip(int num_frames) {
   return MakeSyntheticScene(options);
 }
 
+std::vector<SelectedFrame> Search(const std::vector<FrameShape>& frames, int central_idx,
+                                  const ThesisRegistrationOptions& thesis, const Layout& layout) {
+  RegistrationOptions options;
+  options.thesis = thesis;
+  return SearchFrames(frames, central_idx, layout, options);
+}
+
 TEST(FrameSelection, SharedMarkersAreCounted) {
   const auto make = [](const std::vector<int>& ids) {
     FrameShape frame;
@@ -38,8 +45,8 @@ TEST(FrameSelection, CentralFrameIsTheOneWhoseMarkersRecurMost) {
 TEST(FrameSelection, SearchVisitsWindowsOfTheThesis) {
   const SyntheticScene scene = Clip(61);
   const auto frames = FrameShapes(scene);
-  const FrameSearchOptions search{2, 10, 3};
-  const auto selected = SearchFrames(frames, 30, search, scene.layout, {});
+  const ThesisRegistrationOptions search{2, 10, 3};
+  const auto selected = Search(frames, 30, search, scene.layout);
   ASSERT_EQ(selected.size(), 4u);
   EXPECT_NEAR(selected[1].frame_idx, 20, 3);
   EXPECT_NEAR(selected[0].frame_idx, selected[1].frame_idx - 10, 3);
@@ -53,7 +60,7 @@ TEST(FrameSelection, SearchTakesTheFrameWithMostInliers) {
   for (std::size_t idx = 16; idx < 31; ++idx) {
     if (idx != 27) frames[idx].markers.resize(8);
   }
-  const auto selected = SearchFrames(frames, 15, {1, 10, 5}, scene.layout, {});
+  const auto selected = Search(frames, 15, {1, 10, 5}, scene.layout);
   ASSERT_EQ(selected.size(), 2u);
   EXPECT_EQ(selected[1].frame_idx, 27);
 }
@@ -62,7 +69,7 @@ TEST(FrameSelection, EmptyWindowIsPassedOver) {
   const SyntheticScene scene = Clip(41);
   auto frames = FrameShapes(scene);
   frames.erase(frames.begin() + 22, frames.begin() + 35);
-  const auto selected = SearchFrames(frames, 15, {3, 5, 2}, scene.layout, {});
+  const auto selected = Search(frames, 15, {3, 5, 2}, scene.layout);
   ASSERT_FALSE(selected.empty());
   EXPECT_GE(*frames[static_cast<std::size_t>(selected.back().frame_idx)].frame_number, 35);
 }
@@ -70,11 +77,11 @@ TEST(FrameSelection, EmptyWindowIsPassedOver) {
 TEST(FrameSelection, SearchStaysWithinReach) {
   const SyntheticScene scene = Clip(121);
   const auto frames = FrameShapes(scene);
-  const FrameSearchOptions search{3, 10, 5};
+  const ThesisRegistrationOptions search{3, 10, 5};
   const auto [first, last] = ReachableFrames(60, search);
   EXPECT_EQ(first, 15);
   EXPECT_EQ(last, 105);
-  for (const SelectedFrame& selected : SearchFrames(frames, 60, search, scene.layout, {})) {
+  for (const SelectedFrame& selected : Search(frames, 60, search, scene.layout)) {
     EXPECT_GE(selected.frame_idx, first);
     EXPECT_LE(selected.frame_idx, last);
   }
@@ -85,21 +92,21 @@ TEST(FrameSelection, HugeOptionsReachAllFrames) {
   constexpr int kHuge = std::numeric_limits<int>::max();
   const SyntheticScene scene = Clip(5);
   const auto frames = FrameShapes(scene);
-  for (const FrameSearchOptions& search :
-       {FrameSearchOptions{kHuge, kHuge, kHuge}, FrameSearchOptions{kHuge, 1, kHuge},
-        FrameSearchOptions{kHuge, 1, 1}, FrameSearchOptions{100000, 100000, 5}}) {
+  for (const ThesisRegistrationOptions& search :
+       {ThesisRegistrationOptions{kHuge, kHuge, kHuge}, ThesisRegistrationOptions{kHuge, 1, kHuge},
+        ThesisRegistrationOptions{kHuge, 1, 1}, ThesisRegistrationOptions{100000, 100000, 5}}) {
     EXPECT_EQ(ReachableFrames(60, search), std::make_pair(0, kHuge));
     const int central_idx = ChooseCentralVideoFrame(frames, search).frame_idx;
     EXPECT_GE(central_idx, 0);
     EXPECT_LT(central_idx, 5);
-    EXPECT_LE(SearchFrames(frames, 2, search, scene.layout, {}).size(), 4u);
+    EXPECT_LE(Search(frames, 2, search, scene.layout).size(), 4u);
   }
-  EXPECT_EQ(SearchFrames(frames, 2, {kHuge, 1, 0}, scene.layout, {}).size(), 4u);
+  EXPECT_EQ(Search(frames, 2, {kHuge, 1, 0}, scene.layout).size(), 4u);
   EXPECT_EQ(FitToVideo({kHuge, 10, 5}, 80).skip, 1);
 }
 
 TEST(FrameSelection, ShortVideoShrinksTheSkip) {
-  const FrameSearchOptions thesis;
+  const ThesisRegistrationOptions thesis;
   EXPECT_EQ(FitToVideo(thesis, 1000).skip, 10);
   EXPECT_EQ(FitToVideo(thesis, 1000).neighborhood, 5);
   EXPECT_EQ(FitToVideo(thesis, 80).skip, 4);

@@ -55,8 +55,11 @@ TEST(ShapeAveraging, NarrowWeightsIgnoreAnOutlierThatThePlainMeanFollows) {
   auto frames = NoisyFrames(20, 0.001);
   frames.push_back({Square({1, 2, 4}, 0.3)});
   const MarkerPoints truth = Square({1, 2, 3}, 0.3);
-  EXPECT_GT(RmsDistance(AverageMarker(frames, {0, 0.6}), truth), 0.04);
-  EXPECT_LT(RmsDistance(AverageMarker(frames, {30, 0.05}), truth), 0.002);
+  ThesisRegistrationOptions plain, narrow;
+  plain.num_mean_iterations = 0;
+  narrow.mean_sigma_m = 0.05;
+  EXPECT_GT(RmsDistance(AverageMarker(frames, plain), truth), 0.04);
+  EXPECT_LT(RmsDistance(AverageMarker(frames, narrow), truth), 0.002);
 }
 
 TEST(ShapeAveraging, FlippedSolutionIsLeftOutWhereFramesAgreeOnTheOther) {
