@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 
 #include "importer/geometry/alignment.h"
@@ -42,19 +41,15 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
   return shared;
 }
 
-// Index of the pose solution of a marker that fits its position in the shape best.
-int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
-                 const MarkerPoints& x_in_shape) {
-  int best = 0;
-  double best_distance = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < marker.x_in_cam.size(); ++i) {
-    const double distance = RmsDistance(Transform(shape_from_cam, marker.x_in_cam[i]), x_in_shape);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = static_cast<int>(i);
-    }
-  }
-  return best;
+// The pose solution of a marker that fits its position in the shape best.
+const MarkerPoints& BestSolution(const SharedMarker& marker, const Rigid3& shape_from_cam) {
+  const auto distance_m = [&](const MarkerPoints& x_in_cam) {
+    return RmsDistance(Transform(shape_from_cam, x_in_cam), *marker.in_shape);
+  };
+  const std::vector<MarkerPoints>& solutions = marker.in_frame->x_in_cam;
+  return *std::min_element(
+      solutions.begin(), solutions.end(),
+      [&](const MarkerPoints& a, const MarkerPoints& b) { return distance_m(a) < distance_m(b); });
 }
 
 // The shared markers of a frame and the shape, compared by centres or by all points (ransac.h).
@@ -119,8 +114,7 @@ class AlignmentProblem {
     std::vector<Eigen::Vector3d> x_in_cam, x_in_shape;
     for (const int idx : idxs) {
       const SharedMarker& marker = Marker(idx);
-      const MarkerPoints& points = marker.in_frame->x_in_cam[static_cast<std::size_t>(
-          BestSolution(*marker.in_frame, shape_from_cam, *marker.in_shape))];
+      const MarkerPoints& points = BestSolution(marker, shape_from_cam);
       x_in_cam.insert(x_in_cam.end(), points.begin(), points.end());
       x_in_shape.insert(x_in_shape.end(), marker.in_shape->begin(), marker.in_shape->end());
     }
@@ -132,11 +126,8 @@ class AlignmentProblem {
     if (use_centers_) {
       return (shape_from_cam * marker.in_frame->x_in_cam.front()[0] - (*marker.in_shape)[0]).norm();
     }
-    double error = std::numeric_limits<double>::max();
-    for (const MarkerPoints& x_in_cam : marker.in_frame->x_in_cam) {
-      error = std::min(error, RmsDistance(Transform(shape_from_cam, x_in_cam), *marker.in_shape));
-    }
-    return error;
+    return RmsDistance(Transform(shape_from_cam, BestSolution(marker, shape_from_cam)),
+                       *marker.in_shape);
   }
 
   AlignmentHypothesis Score(const Rigid3& shape_from_cam) const {
