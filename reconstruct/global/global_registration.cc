@@ -175,10 +175,10 @@ void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
 int ChooseCentralFrame(const GlobalRegistration& global) {
   int central_idx = -1, most_shared = -1;
   for (int idx = 0; idx < static_cast<int>(global.problem.frames.size()); ++idx) {
-    if (!global.solution.cam_from_shape[static_cast<std::size_t>(idx)]) continue;
+    if (!global.solution.Pose(idx)) continue;
     int shared = 0;
     for (const int observation_idx : global.problem.Frame(idx).observation_idxs) {
-      if (!global.solution.fits[static_cast<std::size_t>(observation_idx)]) continue;
+      if (!global.solution.Fits(observation_idx)) continue;
       shared += global.NumFits(global.problem.Observation(observation_idx).marker_idx) - 1;
     }
     if (shared > most_shared) {
@@ -245,7 +245,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
     const auto named = std::find(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(),
                                  global.central_image_idx);
     central_idx = static_cast<int>(named - global.image_idx_of_frame.begin());
-    if (!global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]) {
+    if (!global.solution.Pose(central_idx)) {
       throw InputError(OptionName(&RegistrationOptions::central_frame) + " " +
                        options.central_frame +
                        ": the image cannot be registered with the others; leave the option out to "

@@ -12,7 +12,7 @@ namespace {
 void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   MapSolution& solution = global->solution;
   const double scale = 1 / global->MedianMarkerScale();
-  const Rigid3 central = *solution.cam_from_shape[static_cast<std::size_t>(central_idx)];
+  const Rigid3 central = *solution.Pose(central_idx);
   for (auto& pose : solution.cam_from_shape) {
     if (!pose) continue;
     *pose = *pose * Inverse(central);
@@ -32,17 +32,14 @@ void ExplainWhyNotRegistered(const GlobalRegistration& global, int frame_idx,
   const auto& observation_idxs = global.problem.Frame(frame_idx).observation_idxs;
   const auto num_shared =
       std::count_if(observation_idxs.begin(), observation_idxs.end(), [&global](int idx) {
-        return !global.solution
-                    .shape_from_marker[static_cast<std::size_t>(
-                        global.problem.Observation(idx).marker_idx)]
-                    .empty();
+        return !global.solution.Places(global.problem.Observation(idx).marker_idx).empty();
       });
   ExplainWhyNotRegistered(static_cast<int>(num_shared), static_cast<int>(observation_idxs.size()),
                           global.options.min_num_inliers, frame);
 }
 
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
-  const auto& pose = global.solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
+  const auto& pose = global.solution.Pose(frame_idx);
   if (!pose) {
     if (frame->reason.empty()) ExplainWhyNotRegistered(global, frame_idx, frame);
     return;
@@ -51,8 +48,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
   double sum = 0.0;
   for (const int idx : global.problem.Frame(frame_idx).observation_idxs) {
     const MapObservation& observation = global.problem.Observation(idx);
-    const auto& places =
-        global.solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)];
+    const auto& places = global.solution.Places(observation.marker_idx);
     const int marker_id = global.problem.Marker(observation.marker_idx).marker_id;
     if (places.empty()) {
       const auto dropped = global.dropped_markers.find(observation.marker_idx);
@@ -61,7 +57,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
       frame->outlier_reasons.push_back("left out of all images: " + dropped->second.reason);
       continue;
     }
-    if (!global.solution.fits[static_cast<std::size_t>(idx)]) {
+    if (!global.solution.Fits(idx)) {
       frame->outlier_ids.push_back(marker_id);
       frame->outlier_reasons.push_back(
           OutlierReason(global.problem, global.solution, global.noise, observation));
@@ -94,9 +90,7 @@ void AddMarkers(const GlobalRegistration& global, Registration* registration) {
     } else {
       const auto num_seen = std::count_if(
           marker.observation_idxs.begin(), marker.observation_idxs.end(), [&global](int i) {
-            return global.solution
-                .cam_from_shape[static_cast<std::size_t>(global.problem.Observation(i).frame_idx)]
-                .has_value();
+            return global.solution.Pose(global.problem.Observation(i).frame_idx).has_value();
           });
       registration->dropped_markers.push_back(
           {marker.marker_id, static_cast<int>(num_seen),

@@ -13,7 +13,7 @@ int GlobalRegistration::NumFits(int marker_idx) const {
 int GlobalRegistration::NumFitsInFrame(int frame_idx) const {
   int count = 0;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
-    count += solution.fits[static_cast<std::size_t>(idx)];
+    count += solution.Fits(idx);
   }
   return count;
 }

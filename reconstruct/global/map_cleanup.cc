@@ -33,7 +33,7 @@ bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker
   std::rotate(observation.px_from_ray.begin(), observation.px_from_ray.begin() + quarters,
               observation.px_from_ray.end());
   const auto frame_idx = static_cast<std::size_t>(observation.frame_idx);
-  const auto& places = global.solution.shape_from_marker[static_cast<std::size_t>(as_marker_idx)];
+  const auto& places = global.solution.Places(as_marker_idx);
   return ReprojectionError(global.problem, observation, *global.solution.cam_from_shape[frame_idx],
                            places.front()) <= GrowthTolerance(observation);
 }
@@ -54,8 +54,7 @@ bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
   const auto count = static_cast<double>(observation_idxs.size());
   for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
        ++other_idx) {
-    if (other_idx == marker_idx ||
-        global.solution.shape_from_marker[static_cast<std::size_t>(other_idx)].empty() ||
+    if (other_idx == marker_idx || global.solution.Places(other_idx).empty() ||
         count >= kRivalRatio * global.NumFits(other_idx)) {
       continue;
     }
@@ -72,7 +71,7 @@ bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
 // no second place.
 bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
-  if (global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty()) return false;
+  if (global.solution.Places(marker_idx).empty()) return false;
   return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
     return FitsRenumbered(global, observation_idx, marker_idx, 1);
   });
@@ -84,13 +83,12 @@ std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
   std::vector<int> rival_ids;
   for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
        ++other_idx) {
-    if (other_idx == marker_idx ||
-        global.solution.shape_from_marker[static_cast<std::size_t>(other_idx)].empty()) {
+    if (other_idx == marker_idx || global.solution.Places(other_idx).empty()) {
       continue;
     }
     const auto& observation_idxs = global.problem.Marker(marker_idx).observation_idxs;
     if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
-          return !global.solution.fits[static_cast<std::size_t>(observation_idx)] ||
+          return !global.solution.Fits(observation_idx) ||
                  FitsRenumbered(global, observation_idx, other_idx, 0);
         })) {
       rival_ids.push_back(global.problem.Marker(other_idx).marker_id);
@@ -175,7 +173,7 @@ void LeaveOutBlurredFrames(GlobalRegistration* global) {
     const auto& observation_idxs = global->problem.frames[idx].observation_idxs;
     const bool is_needed = std::any_of(
         observation_idxs.begin(), observation_idxs.end(), [global](int observation_idx) {
-          return global->solution.fits[static_cast<std::size_t>(observation_idx)] &&
+          return global->solution.Fits(observation_idx) &&
                  global->NumFits(global->problem.Observation(observation_idx).marker_idx) <=
                      kMinViewsWithoutBlurred;
         });
@@ -209,8 +207,7 @@ void LimitFrames(GlobalRegistration* global) {
   const std::vector<int> chosen = ChooseViews(problem, global->solution, sigma_factor_of_frame,
                                               first_idx, global->options.global.max_num_frames);
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
-    if (global->solution.cam_from_shape[static_cast<std::size_t>(idx)] &&
-        !std::binary_search(chosen.begin(), chosen.end(), idx)) {
+    if (global->solution.Pose(idx) && !std::binary_search(chosen.begin(), chosen.end(), idx)) {
       global->LeaveOut(
           idx, std::string(kNotChosen) + "adds less to the precision than the chosen frames");
     }
@@ -223,8 +220,7 @@ void DropUnsupported(GlobalRegistration* global) {
   for (bool changed = true; changed;) {
     changed = false;
     for (int idx = 0; idx < static_cast<int>(global->problem.markers.size()); ++idx) {
-      if (global->solution.shape_from_marker[static_cast<std::size_t>(idx)].empty() ||
-          global->NumFits(idx) >= min_num_frames) {
+      if (global->solution.Places(idx).empty() || global->NumFits(idx) >= min_num_frames) {
         continue;
       }
       global->Drop(idx, fmt::format("seen in {} registered frames; {} are needed",
@@ -232,7 +228,7 @@ void DropUnsupported(GlobalRegistration* global) {
       changed = true;
     }
     for (int idx = 0; idx < static_cast<int>(global->problem.frames.size()); ++idx) {
-      if (!global->solution.cam_from_shape[static_cast<std::size_t>(idx)] ||
+      if (!global->solution.Pose(idx) ||
           global->NumFitsInFrame(idx) >= global->options.min_num_inliers) {
         continue;
       }

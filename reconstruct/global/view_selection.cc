@@ -37,10 +37,10 @@ struct CenterView {
 std::vector<CenterView> ViewsOf(const MapProblem& problem, const MapSolution& solution,
                                 int frame_idx, double sigma_factor) {
   std::vector<CenterView> views;
-  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
+  const Rigid3& pose = *solution.Pose(frame_idx);
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
-    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    if (!solution.Fits(idx)) continue;
     const MapObservation& observation = problem.Observation(idx);
     const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
     const Eigen::Vector3d x = pose * solution.shape_from_marker[marker_idx].front().translation;

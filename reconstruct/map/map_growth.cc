@@ -21,7 +21,7 @@ constexpr double kJoinRatio = 0.5;
 constexpr int kManyFrames = 16;
 
 bool IsRegistered(const MapSolution& solution, int frame_idx) {
-  return solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value();
+  return solution.Pose(frame_idx).has_value();
 }
 
 // Number of views that the map has of the markers that a frame sees; at most two of each marker
@@ -40,9 +40,7 @@ int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
 int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx) {
   const auto& idxs = problem.Frame(frame_idx).observation_idxs;
   return static_cast<int>(std::count_if(idxs.begin(), idxs.end(), [&](int idx) {
-    return !solution
-                .shape_from_marker[static_cast<std::size_t>(problem.Observation(idx).marker_idx)]
-                .empty();
+    return !solution.Places(problem.Observation(idx).marker_idx).empty();
   }));
 }
 
@@ -163,10 +161,10 @@ bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marke
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
     if (!IsRegistered(solution, problem.Observation(idx).frame_idx)) continue;
     ++num_seen;
-    num_fits += solution.fits[static_cast<std::size_t>(idx)];
+    num_fits += solution.Fits(idx);
   }
-  return solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].size() == 1 &&
-         num_fits >= 2 && num_fits >= settled_ratio * num_seen;
+  return solution.Places(marker_idx).size() == 1 && num_fits >= 2 &&
+         num_fits >= settled_ratio * num_seen;
 }
 
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,

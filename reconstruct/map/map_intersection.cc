@@ -34,7 +34,7 @@ std::vector<View> FindViews(const MapProblem& problem, const MapSolution& soluti
   std::vector<View> views;
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    const auto& pose = solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const auto& pose = solution.Pose(observation.frame_idx);
     if (pose) views.push_back({idx, &observation, &*pose});
   }
   return views;

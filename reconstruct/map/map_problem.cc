@@ -122,10 +122,9 @@ double ReprojectionError(const MapProblem& problem, const MapObservation& observ
 double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
                          const MapObservation& observation) {
   double error_px = std::numeric_limits<double>::infinity();
-  const auto& pose = solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  const auto& pose = solution.Pose(observation.frame_idx);
   if (!pose) return error_px;
-  for (const Sim3& place :
-       solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)]) {
+  for (const Sim3& place : solution.Places(observation.marker_idx)) {
     error_px = std::min(error_px, ReprojectionError(problem, observation, *pose, place));
   }
   return error_px;
@@ -146,7 +145,7 @@ void MarkFits(const MapProblem& problem, double factor, MapSolution* solution) {
 int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
   int count = 0;
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    count += solution.fits[static_cast<std::size_t>(idx)];
+    count += solution.Fits(idx);
   }
   return count;
 }

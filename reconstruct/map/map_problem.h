@@ -63,6 +63,15 @@ struct MapSolution {
   std::vector<std::vector<Sim3>> shape_from_marker;
   std::vector<char> fits;  // by observation_idx: the observation agrees with frame and marker
 
+  const std::optional<Rigid3>& Pose(int frame_idx) const {
+    return cam_from_shape[static_cast<std::size_t>(frame_idx)];
+  }
+  const std::vector<Sim3>& Places(int marker_idx) const {
+    return shape_from_marker[static_cast<std::size_t>(marker_idx)];
+  }
+  bool Fits(int observation_idx) const {
+    return fits[static_cast<std::size_t>(observation_idx)] != 0;
+  }
   int NumRegistered() const;
 };
 

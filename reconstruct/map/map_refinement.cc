@@ -75,8 +75,7 @@ void MarkerPlaceProblem::Evaluate(const Sim3& place, bool, Equations* equations)
   const Eigen::Matrix3d scaled_rotation = place.scale * place.rotation.toRotationMatrix();
   for (const int idx : observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    const Rigid3& cam_from_shape =
-        *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const Rigid3& cam_from_shape = *solution.Pose(observation.frame_idx);
     const Eigen::Matrix3d cam_rotation = cam_from_shape.rotation.toRotationMatrix();
     const auto rotated =
         Rotated(scaled_rotation, problem.Marker(observation.marker_idx).corners_in_marker);

@@ -35,8 +35,7 @@ std::vector<KnownMarker> FindKnown(const MapProblem& problem, const MapSolution&
   std::vector<KnownMarker> known;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    const auto& places =
-        solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)];
+    const auto& places = solution.Places(observation.marker_idx);
     if (!places.empty()) known.push_back({&observation, idx, &places});
   }
   return known;

@@ -32,10 +32,9 @@ std::string Px(double value) {
 std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
                                                const MapSolution& solution,
                                                const MapObservation& observation) {
-  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
-  const auto corners = CornersInShape(
-      problem.Marker(observation.marker_idx),
-      solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].front());
+  const Rigid3& pose = *solution.Pose(observation.frame_idx);
+  const auto corners = CornersInShape(problem.Marker(observation.marker_idx),
+                                      solution.Places(observation.marker_idx).front());
   std::array<double, kNumCorners> errors_px{};
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     errors_px[i] =
@@ -84,15 +83,15 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
   const MapMarker& marker = problem.Marker(marker_idx);
-  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const Sim3& place = solution.Places(marker_idx).front();
   const double factor = std::max(noise.factor, kMinFactor);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d with_side = Eigen::Vector3d::Zero();
   double of_side = 1 / (kScaleSigma * kScaleSigma);
   for (const int idx : marker.observation_idxs) {
-    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    if (!solution.Fits(idx)) continue;
     const MapObservation& observation = problem.Observation(idx);
-    const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const Rigid3& pose = *solution.Pose(observation.frame_idx);
     const Eigen::Vector3d x = pose * place.translation;
     const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
     const double sigma_px = factor * observation.sigma_px;
@@ -168,7 +167,7 @@ std::string OutlierReason(const MapProblem& problem, const MapSolution& solution
                           const MapNoise& noise, const MapObservation& observation) {
   const double tolerance_px =
       std::max(FinalTolerance(observation, noise), GrowthTolerance(observation));
-  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  const Rigid3& pose = *solution.Pose(observation.frame_idx);
   const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
   for (std::size_t other_idx = 0; other_idx < problem.markers.size(); ++other_idx) {
     if (other_idx == marker_idx || solution.shape_from_marker[other_idx].empty()) continue;
@@ -208,7 +207,7 @@ std::string OutlierReason(const MapProblem& problem, const MapSolution& solution
 PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
                        const MapNoise& noise, int marker_idx) {
   const MapMarker& marker = problem.Marker(marker_idx);
-  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const Sim3& place = solution.Places(marker_idx).front();
   const auto corners = CornersInShape(marker, place);
   PlacedMarker placed;
   placed.marker_id = marker.marker_id;
@@ -216,7 +215,7 @@ PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
   placed.sigma_m = CenterSigma(problem, solution, noise, marker_idx);
   std::vector<char> sees(problem.frames.size(), 0);
   for (const int idx : marker.observation_idxs) {
-    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    if (!solution.Fits(idx)) continue;
     sees[static_cast<std::size_t>(problem.Observation(idx).frame_idx)] = 1;
     ++placed.num_seen;
   }

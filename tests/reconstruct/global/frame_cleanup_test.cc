@@ -69,7 +69,7 @@ TEST(LimitFrames, FrameThatTheUserNamedStays) {
     grown.global.central_image_idx = central_idx;
     grown.options.global.max_num_frames = 4;
     LimitFrames(&grown.global);
-    EXPECT_TRUE(grown.global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]);
+    EXPECT_TRUE(grown.global.solution.Pose(central_idx));
   }
 }
 

@@ -42,7 +42,7 @@ struct GrownMap {
     for (const auto& [marker_idx, dropped] : global.dropped_markers) {
       EXPECT_EQ(dropped.marker_id, global.problem.Marker(marker_idx).marker_id);
       EXPECT_FALSE(dropped.reason.empty());
-      EXPECT_TRUE(global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty());
+      EXPECT_TRUE(global.solution.Places(marker_idx).empty());
       EXPECT_EQ(global.NumFits(marker_idx), 0);
       ids.push_back(dropped.marker_id);
     }

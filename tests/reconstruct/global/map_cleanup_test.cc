@@ -166,9 +166,7 @@ TEST(DropContradictions, MisreadIdAtThePlaceOfAnotherMarkerGoes) {
   }
   GrownMap grown(std::move(scene));
   const std::size_t idx_7 = static_cast<std::size_t>(grown.map.MarkerIdx(7));
-  const Sim3 place =
-      grown.global.solution.shape_from_marker[static_cast<std::size_t>(grown.map.MarkerIdx(21))]
-          .front();
+  const Sim3 place = grown.global.solution.Places(grown.map.MarkerIdx(21)).front();
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(-std::acos(0.0), Eigen::Vector3d::UnitZ()));
   grown.global.solution.shape_from_marker[idx_7] = {
       {place.scale, place.rotation * quarter, place.translation}};

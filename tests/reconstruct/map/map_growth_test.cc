@@ -89,8 +89,7 @@ TEST(GrowMap, RegistersOnlyTheFramesThatAreAskedFor) {
   GrowMap(map.problem, {1, 5, 10}, {2, 0, true, TestSeed()}, &solution);
   for (const int frame_idx : AllFrames(map.problem)) {
     const bool is_expected = std::set<int>{1, 3, 5, 8, 10}.count(frame_idx) > 0;
-    EXPECT_EQ(solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value(),
-              is_expected);
+    EXPECT_EQ(solution.Pose(frame_idx).has_value(), is_expected);
   }
 }
 

@@ -51,10 +51,9 @@ TEST(PlaceMarker, ChoiceOfTheShapeFrameChangesNothing) {
         PlaceMarker(map.problem, poses, marker_idx, 1.0).places.front().shape_from_marker};
     const MapSolution expected = Transformed(new_from_shape, placed);
     const auto in_moved = PlaceMarker(map.problem, moved, marker_idx, 1.0).places;
-    EXPECT_LT(StepBetween(expected.shape_from_marker[static_cast<std::size_t>(marker_idx)].front(),
-                          in_moved.front().shape_from_marker)
-                  .norm(),
-              1e-4);
+    EXPECT_LT(
+        StepBetween(expected.Places(marker_idx).front(), in_moved.front().shape_from_marker).norm(),
+        1e-4);
   }
 }
 

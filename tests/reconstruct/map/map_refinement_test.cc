@@ -22,9 +22,7 @@ std::vector<PlacedObservation> PlacedObservations(const MapProblem& problem,
   std::vector<PlacedObservation> placed;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    placed.push_back(
-        {&observation,
-         &solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].front()});
+    placed.push_back({&observation, &solution.Places(observation.marker_idx).front()});
   }
   return placed;
 }
@@ -53,8 +51,7 @@ double MarkerCost(const MapProblem& problem, const MapSolution& solution,
   for (const int idx : observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
     squared_errors.push_back(
-        Residuals(problem, observation,
-                  *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)], place)
+        Residuals(problem, observation, *solution.Pose(observation.frame_idx), place)
             .squaredNorm());
   }
   return CauchyCost(squared_errors) + 0.5 * std::pow(std::log(place.scale) / kScaleSigma, 2);
@@ -92,9 +89,8 @@ TEST(RefineFramePose, EndsAtAMinimumOfTheCauchyLoss) {
   const MapSolution truth = map.TrueSolution();
   for (int frame_idx = 0; frame_idx < 15; frame_idx += 7) {
     const auto placed = PlacedObservations(map.problem, truth, frame_idx);
-    const Rigid3 pose = RefineFramePose(
-        map.problem, placed,
-        Stepped(*truth.cam_from_shape[static_cast<std::size_t>(frame_idx)], LargePoseStep()));
+    const Rigid3 pose =
+        RefineFramePose(map.problem, placed, Stepped(*truth.Pose(frame_idx), LargePoseStep()));
     const double cost = FrameCost(map.problem, placed, pose);
     for (int i = 0; i < 6; ++i) {
       for (const double size : {-1e-4, 1e-4}) {
@@ -212,8 +208,7 @@ TEST(RefineMarkerPlace, OneViewLeavesTheSizeToThePrior) {
   const MapSolution truth = map.TrueSolution();
   const int idx = map.problem.markers[11].observation_idxs.front();
   // Twice as large at twice the distance: one view cannot tell.
-  const Rigid3 cam_from_shape =
-      *truth.cam_from_shape[static_cast<std::size_t>(map.problem.Observation(idx).frame_idx)];
+  const Rigid3 cam_from_shape = *truth.Pose(map.problem.Observation(idx).frame_idx);
   const Sim3 true_place = map.TruePlace(11);
   const Eigen::Vector3d center = Inverse(cam_from_shape).translation;
   const Sim3 start = {1.1, true_place.rotation, center + 1.1 * (true_place.translation - center)};

@@ -20,9 +20,7 @@ MapSolution Without(int frame_idx, MapSolution solution) {
 }
 
 double Error(const MapSolution& truth, int frame_idx, const PoseHypothesis& hypothesis) {
-  return StepBetween(*truth.cam_from_shape[static_cast<std::size_t>(frame_idx)],
-                     hypothesis.cam_from_shape)
-      .norm();
+  return StepBetween(*truth.Pose(frame_idx), hypothesis.cam_from_shape).norm();
 }
 
 TEST(ResectFrame, ExactCornersGiveTheExactPose) {
@@ -98,8 +96,7 @@ TEST(ResectFrame, ErrorsAreAsLargeAsTheNoiseExplains) {
   for (int frame_idx = 0; frame_idx < 15; ++frame_idx) {
     const auto hypotheses = ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed());
     const Eigen::Matrix<double, 6, 1> error =
-        StepBetween(*truth.cam_from_shape[static_cast<std::size_t>(frame_idx)],
-                    hypotheses.front().cam_from_shape);
+        StepBetween(*truth.Pose(frame_idx), hypotheses.front().cam_from_shape);
     sum += error.dot(PoseInformation(map.problem, truth, frame_idx) * error);
   }
   // Chi-square with 6 degrees of freedom a frame: the mean of 15 is 6 with a sigma of 0.9.
@@ -192,7 +189,7 @@ TEST(ResectFrame, OneDistantMarkerIsAmbiguous) {
     ASSERT_EQ(hypotheses.size(), 2u) << frame_idx;
     EXPECT_TRUE(IsAmbiguous(hypotheses)) << frame_idx;
     // One of the two is the right one.
-    const Rigid3& true_pose = *truth.cam_from_shape[static_cast<std::size_t>(frame_idx)];
+    const Rigid3& true_pose = *truth.Pose(frame_idx);
     EXPECT_LT(std::min(AngularDistance(true_pose, hypotheses[0].cam_from_shape),
                        AngularDistance(true_pose, hypotheses[1].cam_from_shape)),
               0.15);

@@ -156,7 +156,7 @@ TEST_P(StartWithFalseIds, LeavesThemOut) {
   const int num_fits = std::accumulate(start.fits.begin(), start.fits.end(), 0);
   EXPECT_EQ(num_fits, 2 * (NumShared(map, {4, 9}) - 2));
   for (const int marker_id : {id_a, id_b}) {
-    EXPECT_FALSE(start.fits[static_cast<std::size_t>(map.ObservationIdx(9, marker_id))]);
+    EXPECT_FALSE(start.Fits(map.ObservationIdx(9, marker_id)));
   }
 }
 

@@ -288,7 +288,7 @@ double DistanceSigmaOfOneView(SceneMap map, int num_times, double* size_sigma) {
     map.problem.observations.push_back(observation);
     solution.fits.push_back(1);
   }
-  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  const Rigid3& pose = *solution.Pose(observation.frame_idx);
   *size_sigma = observation.sigma_px / observation.side_px;
   return SupportOf(map.problem, solution, noise, marker_idx).sigma_m /
          (pose * map.TruePlace(marker_idx).translation).norm();

@@ -249,11 +249,10 @@ Eigen::Matrix<double, 7, 1> StepBetween(const Sim3& from, const Sim3& to) {
 Eigen::Matrix<double, 6, 6> PoseInformation(const MapProblem& problem, const MapSolution& solution,
                                             int frame_idx) {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
+  const Rigid3& pose = *solution.Pose(frame_idx);
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    const auto& places =
-        solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)];
+    const auto& places = solution.Places(observation.marker_idx);
     if (places.empty()) continue;
     information += Information<6>([&](const Eigen::Matrix<double, 6, 1>& step) {
       return Residuals(problem, observation, Stepped(pose, step), places.front());
@@ -265,10 +264,10 @@ Eigen::Matrix<double, 6, 6> PoseInformation(const MapProblem& problem, const Map
 Eigen::Matrix<double, 7, 7> PlaceInformation(const MapProblem& problem, const MapSolution& solution,
                                              int marker_idx) {
   Eigen::Matrix<double, 7, 7> information = Eigen::Matrix<double, 7, 7>::Zero();
-  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const Sim3& place = solution.Places(marker_idx).front();
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    const auto& pose = solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const auto& pose = solution.Pose(observation.frame_idx);
     if (!pose) continue;
     information += Information<7>([&](const Eigen::Matrix<double, 7, 1>& step) {
       return Residuals(problem, observation, *pose, Stepped(place, step));
