@@ -27,21 +27,15 @@ void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   }
 }
 
-void ExplainWhyNotRegistered(const GlobalRegistration& global, int frame_idx,
-                             RegisteredFrame* frame) {
-  const auto& observation_idxs = global.problem.Frame(frame_idx).observation_idxs;
-  const auto num_shared =
-      std::count_if(observation_idxs.begin(), observation_idxs.end(), [&global](int idx) {
-        return !global.solution.Places(global.problem.Observation(idx).marker_idx).empty();
-      });
-  ExplainWhyNotRegistered(static_cast<int>(num_shared), static_cast<int>(observation_idxs.size()),
-                          global.options.min_num_inliers, frame);
-}
-
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
   const auto& pose = global.solution.Pose(frame_idx);
   if (!pose) {
-    if (frame->reason.empty()) ExplainWhyNotRegistered(global, frame_idx, frame);
+    if (frame->reason.empty()) {
+      ExplainWhyNotRegistered(
+          NumKnown(global.problem, global.solution, frame_idx),
+          static_cast<int>(global.problem.Frame(frame_idx).observation_idxs.size()),
+          global.options.min_num_inliers, frame);
+    }
     return;
   }
   frame->cam_from_shape = *pose;

@@ -26,16 +26,9 @@ constexpr int kMinViewsWithoutBlurred = 3;
 // `quarters` turns.
 bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
             int quarters) {
-  MapObservation observation = global.problem.Observation(observation_idx);
-  observation.marker_idx = as_marker_idx;
-  std::rotate(observation.rays.begin(), observation.rays.begin() + quarters,
-              observation.rays.end());
-  std::rotate(observation.px_from_ray.begin(), observation.px_from_ray.begin() + quarters,
-              observation.px_from_ray.end());
-  const auto frame_idx = static_cast<std::size_t>(observation.frame_idx);
-  const auto& places = global.solution.Places(as_marker_idx);
-  return ReprojectionError(global.problem, observation, *global.solution.cam_from_shape[frame_idx],
-                           places.front()) <= GrowthTolerance(observation);
+  const MapObservation& observation = global.problem.Observation(observation_idx);
+  return ErrorAs(global.problem, global.solution, observation, as_marker_idx, quarters) <=
+         GrowthTolerance(observation);
 }
 
 // The same for any number of turns from `min_quarters` on.

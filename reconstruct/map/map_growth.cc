@@ -20,10 +20,6 @@ constexpr double kJoinRatio = 0.5;
 // A map of fewer frames may at most double in a round.
 constexpr int kManyFrames = 16;
 
-bool IsRegistered(const MapSolution& solution, int frame_idx) {
-  return solution.Pose(frame_idx).has_value();
-}
-
 // Number of views that the map has of the markers that a frame sees; at most two of each marker
 // count, because two confirm its place.
 int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
@@ -35,13 +31,6 @@ int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
     num_views += num_fits[marker_idx] >= 2 ? 2 : 1;
   }
   return num_views;
-}
-
-int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx) {
-  const auto& idxs = problem.Frame(frame_idx).observation_idxs;
-  return static_cast<int>(std::count_if(idxs.begin(), idxs.end(), [&](int idx) {
-    return !solution.Places(problem.Observation(idx).marker_idx).empty();
-  }));
 }
 
 struct Candidate {
@@ -59,7 +48,7 @@ std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSoluti
   }
   std::vector<Candidate> candidates;
   for (const int frame_idx : frame_idxs) {
-    if (IsRegistered(solution, frame_idx) ||
+    if (solution.Pose(frame_idx) ||
         NumKnown(problem, solution, frame_idx) < options.min_num_inliers) {
       continue;
     }
@@ -159,7 +148,7 @@ bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marke
                double settled_ratio) {
   int num_seen = 0, num_fits = 0;
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    if (!IsRegistered(solution, problem.Observation(idx).frame_idx)) continue;
+    if (!solution.Pose(problem.Observation(idx).frame_idx)) continue;
     ++num_seen;
     num_fits += solution.Fits(idx);
   }

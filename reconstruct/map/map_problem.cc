@@ -130,6 +130,17 @@ double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
   return error_px;
 }
 
+double ErrorAs(const MapProblem& problem, const MapSolution& solution, MapObservation observation,
+               int as_marker_idx, int quarters) {
+  observation.marker_idx = as_marker_idx;
+  std::rotate(observation.rays.begin(), observation.rays.begin() + quarters,
+              observation.rays.end());
+  std::rotate(observation.px_from_ray.begin(), observation.px_from_ray.begin() + quarters,
+              observation.px_from_ray.end());
+  return ReprojectionError(problem, observation, *solution.Pose(observation.frame_idx),
+                           solution.Places(as_marker_idx).front());
+}
+
 double GrowthTolerance(const MapObservation& observation) {
   return std::max(2.0, 0.1 * observation.side_px);
 }
@@ -148,6 +159,13 @@ int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_i
     count += solution.Fits(idx);
   }
   return count;
+}
+
+int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx) {
+  const auto& idxs = problem.Frame(frame_idx).observation_idxs;
+  return static_cast<int>(std::count_if(idxs.begin(), idxs.end(), [&](int idx) {
+    return !solution.Places(problem.Observation(idx).marker_idx).empty();
+  }));
 }
 
 std::array<Eigen::Vector3d, kNumCorners> CornersInShape(const MapMarker& marker,

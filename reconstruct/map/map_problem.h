@@ -93,6 +93,11 @@ double ReprojectionError(const MapProblem& problem, const MapObservation& observ
 double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
                          const MapObservation& observation);
 
+// The error of the observation as one of the marker `as_marker_idx`, with its corners renumbered by
+// `quarters` turns, px. The frame has a pose and that marker a place.
+double ErrorAs(const MapProblem& problem, const MapSolution& solution, MapObservation observation,
+               int as_marker_idx, int quarters);
+
 // Largest error (px) of an inlier while the map grows and is not precise yet: a tenth of the
 // marker's side, but at least 2 px. A wrong id or corner is off by a side or more.
 double GrowthTolerance(const MapObservation& observation);
@@ -103,6 +108,9 @@ void MarkFits(const MapProblem& problem, double factor, MapSolution* solution);
 
 // The number of observations of the marker that fit.
 int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx);
+
+// The number of markers with a place that the frame shows.
+int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx);
 
 // The corners of a marker in the shape frame, m.
 std::array<Eigen::Vector3d, kNumCorners> CornersInShape(const MapMarker& marker,

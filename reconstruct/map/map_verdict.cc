@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
+
+#include <fmt/format.h>
 
 #include "importer/base/statistics.h"
 #include "importer/geometry/pose_step.h"
@@ -22,11 +23,7 @@ double SigmaFromMedian(double median_rms, double median_of_chi_square) {
   return median_rms * std::sqrt(kNumCorners / median_of_chi_square);
 }
 
-std::string Px(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), value < 10 ? "%.1f px" : "%.0f px", value);
-  return text.data();
-}
+std::string Px(double value) { return fmt::format("{:.{}f} px", value, value < 10 ? 1 : 0); }
 
 // Distances of the corners from their projections, px.
 std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
@@ -167,27 +164,16 @@ std::string OutlierReason(const MapProblem& problem, const MapSolution& solution
                           const MapNoise& noise, const MapObservation& observation) {
   const double tolerance_px =
       std::max(FinalTolerance(observation, noise), GrowthTolerance(observation));
-  const Rigid3& pose = *solution.Pose(observation.frame_idx);
-  const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
-  for (std::size_t other_idx = 0; other_idx < problem.markers.size(); ++other_idx) {
-    if (other_idx == marker_idx || solution.shape_from_marker[other_idx].empty()) continue;
-    MapObservation as_other = observation;
-    as_other.marker_idx = static_cast<int>(other_idx);
-    if (ReprojectionError(problem, as_other, pose, solution.shape_from_marker[other_idx].front()) <=
-        tolerance_px) {
-      return "wrong id: marker " + std::to_string(problem.markers[other_idx].marker_id) +
-             " is there";
+  for (int other_idx = 0; other_idx < static_cast<int>(problem.markers.size()); ++other_idx) {
+    if (other_idx == observation.marker_idx || solution.Places(other_idx).empty()) continue;
+    if (ErrorAs(problem, solution, observation, other_idx, 0) <= tolerance_px) {
+      return fmt::format("wrong id: marker {} is there", problem.Marker(other_idx).marker_id);
     }
   }
-  MapObservation turned = observation;
   for (int quarters = 1; quarters < kNumCorners; ++quarters) {
-    std::rotate(turned.rays.begin(), turned.rays.begin() + 1, turned.rays.end());
-    std::rotate(turned.px_from_ray.begin(), turned.px_from_ray.begin() + 1,
-                turned.px_from_ray.end());
-    if (ReprojectionError(problem, turned, pose, solution.shape_from_marker[marker_idx].front()) <=
-        tolerance_px) {
-      return "corners numbered from the wrong one, turned by " + std::to_string(90 * quarters) +
-             " degrees";
+    if (ErrorAs(problem, solution, observation, observation.marker_idx, quarters) <= tolerance_px) {
+      return fmt::format("corners numbered from the wrong one, turned by {} degrees",
+                         90 * quarters);
     }
   }
   const auto errors_px = CornerErrorsPx(problem, solution, observation);
