@@ -108,10 +108,10 @@ void SetMovement(const MarkerState& state, const Eigen::VectorXd& movement,
   evidence->shape_change_m = rest.norm() / std::sqrt(static_cast<double>(positions.size()));
 }
 
-CalibrationEvidence TestCamera(const Model& model, CameraId camera_id, const MarkerState& state,
-                               const MarkerProblem& problem, const MarkerJacobian& jacobian,
-                               const MarkerCovariance& covariance,
+CalibrationEvidence TestCamera(const Model& model, CameraId camera_id,
+                               const MarkerLinearization& linearization,
                                const RowMajorMatrix& residuals) {
+  const auto& [state, problem, jacobian, covariance] = linearization;
   const RowMajorMatrix design = DesignMatrix(model, problem, camera_id, residuals.rows());
   const RowMajorMatrix left = ErrorsLeft(jacobian, covariance, design);
   const Eigen::MatrixXd full_information = design.transpose() * design;
@@ -148,14 +148,11 @@ CalibrationEvidence TestCamera(const Model& model, CameraId camera_id, const Mar
 
 }  // namespace
 
-CalibrationEvidence TestCalibration(const Model& model, const MarkerState& state,
-                                    const MarkerProblem& problem, const MarkerJacobian& jacobian,
-                                    const MarkerCovariance& covariance) {
-  const RowMajorMatrix residuals = AllResiduals(problem);
+CalibrationEvidence TestCalibration(const Model& model, const MarkerLinearization& linearization) {
+  const RowMajorMatrix residuals = AllResiduals(linearization.problem);
   CalibrationEvidence strongest;
   for (const auto& [camera_id, camera] : model.cameras) {
-    const CalibrationEvidence evidence =
-        TestCamera(model, camera_id, state, problem, jacobian, covariance, residuals);
+    const CalibrationEvidence evidence = TestCamera(model, camera_id, linearization, residuals);
     if (evidence.chi_squared > strongest.chi_squared) strongest = evidence;
   }
   return strongest;

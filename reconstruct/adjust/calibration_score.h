@@ -2,10 +2,8 @@
 
 #pragma once
 
+#include "reconstruct/adjust/marker_solution.h"
 #include "reconstruct/model/calibration_evidence.h"
-#include "reconstruct/model/model.h"
-#include "reconstruct/problem/marker_problem.h"
-#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 
@@ -15,10 +13,8 @@ namespace velamap {
 // can; the rest is fitted to all residuals. These include the sides of the markers, which a wrong
 // calibration makes too long near the centre and too short near the border, or the other way round.
 // Warps that the adjustment itself refines are not tested. For several cameras, returns the
-// strongest evidence. `problem` belongs to `state` at its solution, without loss and with
-// calibrated sigmas that contain the correlation of errors.
-CalibrationEvidence TestCalibration(const Model& model, const MarkerState& state,
-                                    const MarkerProblem& problem, const MarkerJacobian& jacobian,
-                                    const MarkerCovariance& covariance);
+// strongest evidence. `linearization` is that of the solution `model`, with calibrated sigmas that
+// contain the correlation of errors.
+CalibrationEvidence TestCalibration(const Model& model, const MarkerLinearization& linearization);
 
 }  // namespace velamap

@@ -221,9 +221,7 @@ void MarkerAdjuster::Finish() {
   uncertainty.variance_factor = calibration.variance_factor;
   uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
   uncertainty.correlation_factor = correlation_factor;
-  uncertainty.calibration =
-      TestCalibration(solution_.model, linearization->state, linearization->problem,
-                      linearization->jacobian, linearization->covariance);
+  uncertainty.calibration = TestCalibration(solution_.model, *linearization);
   uncertainty.calibration.shape_change_in_sigmas =
       uncertainty.calibration.shape_change_m /
       std::sqrt(Trace(uncertainty.points) /
