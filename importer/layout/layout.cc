@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -23,15 +22,6 @@ void ConnectLines(const std::vector<MarkerLine>& lines, AdjacencyGraph* graph) {
       Connect(line.marker_ids[i - 1], line.marker_ids[i], graph);
     }
   }
-}
-
-std::set<int> IdsOfPart(const LayoutPart& part) {
-  std::set<int> ids(part.marker_ids.begin(), part.marker_ids.end());
-  for (const std::vector<MarkerLine>* lines : {&part.horizontal, &part.vertical}) {
-    for (const MarkerLine& line : *lines)
-      ids.insert(line.marker_ids.begin(), line.marker_ids.end());
-  }
-  return ids;
 }
 
 }  // namespace
@@ -58,15 +48,24 @@ double MarkerLength(const Layout& layout, int marker_id) {
   return exception != layout.marker_lengths_m.end() ? exception->second : layout.marker_length_m;
 }
 
+std::set<int> MarkerIds(const LayoutPart& part) {
+  std::set<int> ids(part.marker_ids.begin(), part.marker_ids.end());
+  for (const std::vector<MarkerLine>* lines : {&part.horizontal, &part.vertical}) {
+    for (const MarkerLine& line : *lines)
+      ids.insert(line.marker_ids.begin(), line.marker_ids.end());
+  }
+  return ids;
+}
+
 std::vector<int> MarkerIds(const Layout& layout) {
   std::set<int> ids;
-  for (const LayoutPart& part : layout.parts) ids.merge(IdsOfPart(part));
+  for (const LayoutPart& part : layout.parts) ids.merge(MarkerIds(part));
   return {ids.begin(), ids.end()};
 }
 
 std::string PartOfMarker(const Layout& layout, int marker_id) {
   for (const LayoutPart& part : layout.parts) {
-    if (IdsOfPart(part).count(marker_id) > 0) return part.name;
+    if (MarkerIds(part).count(marker_id) > 0) return part.name;
   }
   return "";
 }
@@ -74,7 +73,7 @@ std::string PartOfMarker(const Layout& layout, int marker_id) {
 AdjacencyGraph BuildAdjacencyGraph(const Layout& layout) {
   AdjacencyGraph graph;
   for (const LayoutPart& part : layout.parts) {
-    const std::set<int> ids = IdsOfPart(part);
+    const std::set<int> ids = MarkerIds(part);
     for (const int id : ids) graph[id];
     ConnectLines(part.horizontal, &graph);
     ConnectLines(part.vertical, &graph);

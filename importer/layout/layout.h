@@ -7,6 +7,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -93,8 +94,9 @@ void CheckMarkerLength(double length_m, const std::string& what);
 // The length of the marker's side, m.
 double MarkerLength(const Layout& layout, int marker_id);
 
-// The ids that the layout names, ascending, each once.
+// The ids that the layout or the part names, ascending, each once.
 std::vector<int> MarkerIds(const Layout& layout);
+std::set<int> MarkerIds(const LayoutPart& part);
 
 // The name of the part that holds the marker, or "" if none does.
 std::string PartOfMarker(const Layout& layout, int marker_id);

@@ -174,13 +174,6 @@ void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgem
   }
 }
 
-std::set<int> IdsOf(const LayoutPart& part) {
-  Layout alone;
-  alone.parts.push_back(part);
-  const std::vector<int> ids = MarkerIds(alone);
-  return {ids.begin(), ids.end()};
-}
-
 }  // namespace
 
 std::vector<Contradiction> FindContradictions(const Layout& layout,
@@ -196,7 +189,7 @@ std::vector<Contradiction> FindContradictions(const Layout& layout,
   if (!layout.HasMarkers() && !evidence.markers.empty()) DropFarMarkers({}, {}, &evidence);
   for (const LayoutPart& part : layout.parts) {
     if (evidence.markers.empty()) break;
-    DropFarMarkers(IdsOf(part), JudgeByLines(part, evidence.markers), &evidence);
+    DropFarMarkers(MarkerIds(part), JudgeByLines(part, evidence.markers), &evidence);
   }
   std::vector<Contradiction> contradictions;
   for (const auto& [id, reason] : evidence.reasons) contradictions.push_back({id, reason});

@@ -15,9 +15,7 @@ Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int 
 MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
   std::map<int, const LayoutPart*> part_of;
   for (const LayoutPart& part : layout.parts) {
-    Layout only_this;
-    only_this.parts = {part};
-    for (const int marker_id : MarkerIds(only_this)) part_of.emplace(marker_id, &part);
+    for (const int marker_id : MarkerIds(part)) part_of.emplace(marker_id, &part);
   }
   MarkerState state;
   for (const auto& [point3D_id, point] : model.points3D) {
