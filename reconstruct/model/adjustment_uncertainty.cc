@@ -134,6 +134,17 @@ void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader)
   }
 }
 
+// Of the ids and coordinates of all points; never 0.
+std::uint64_t HashOfPoints(const Model& model) {
+  std::uint64_t hash = Hash("points");
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const double* x = point.x_in_world.data();
+    hash = Hash({reinterpret_cast<const char*>(&point3D_id), sizeof(point3D_id)}, hash);
+    hash = Hash({reinterpret_cast<const char*>(x), 3 * sizeof(double)}, hash);
+  }
+  return hash == 0 ? 1 : hash;
+}
+
 void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, std::ostream* out) {
   Write(kMagic, sizeof(kMagic), out);
   Write(kVersion, out);
@@ -157,16 +168,6 @@ void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, 
 }
 
 }  // namespace
-
-std::uint64_t HashOfPoints(const Model& model) {
-  std::uint64_t hash = Hash("points");
-  for (const auto& [point3D_id, point] : model.points3D) {
-    const double* x = point.x_in_world.data();
-    hash = Hash({reinterpret_cast<const char*>(&point3D_id), sizeof(point3D_id)}, hash);
-    hash = Hash({reinterpret_cast<const char*>(x), 3 * sizeof(double)}, hash);
-  }
-  return hash == 0 ? 1 : hash;
-}
 
 void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const Model& model,
                       const std::string& folder) {

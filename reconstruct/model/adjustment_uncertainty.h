@@ -41,11 +41,8 @@ struct AdjustmentUncertainty {
   double rolling_shutter_s = 0.0;
   double rolling_shutter_sigma_s = 0.0;
   CalibrationEvidence calibration;
-  std::uint64_t model_hash = 0;  // HashOfPoints() of its model, where a file says it; else 0
+  std::uint64_t model_hash = 0;  // of the points of its model, where a file says it; else 0
 };
-
-// Of the ids and coordinates of all points; never 0.
-std::uint64_t HashOfPoints(const Model& model);
 
 // The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see
 // HasUncertainty), truncated or of another format. `model` is the model in the folder, whose hash
