@@ -56,12 +56,11 @@ const std::array<ModelFile, 3>& ChooseFiles(const fs::path& path) {
   }
   if (HasAll(path, kBinaryFiles)) return kBinaryFiles;
   if (HasAll(path, kTextFiles)) return kTextFiles;
-  if (!HasAny(path, kBinaryFiles) && !HasAny(path, kTextFiles)) {
-    throw InputError(
-        fmt::format("{}: holds no COLMAP model (cameras, images and points3D, .bin or .txt){}",
-                    path.string(), IsFolder(path / "0") ? "; did you mean its folder 0?" : ""));
-  }
-  return HasAny(path, kBinaryFiles) ? kBinaryFiles : kTextFiles;
+  if (HasAny(path, kBinaryFiles)) return kBinaryFiles;
+  if (HasAny(path, kTextFiles)) return kTextFiles;
+  throw InputError(
+      fmt::format("{}: holds no COLMAP model (cameras, images and points3D, .bin or .txt){}",
+                  path.string(), IsFolder(path / "0") ? "; did you mean its folder 0?" : ""));
 }
 
 void WriteFiles(const Model& model, const fs::path& path, const std::array<ModelFile, 3>& files) {
