@@ -39,7 +39,6 @@ Camera LensOf(CameraModel model, int width_px, int height_px, double focal_px) {
 struct ViewErrors {
   CornerVector errors = CornerVector::Zero();
   CornerVector by_log_focal = CornerVector::Zero();
-  double SquaredNorm() const { return errors.squaredNorm(); }
 };
 
 std::optional<CornerVector> Project(const Camera& camera, const Rigid3& cam_from_marker) {
@@ -121,7 +120,7 @@ class PooledViews {
     const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
     double cost = 0.0;
     for (const auto& errors : Evaluate(camera, false)) {
-      cost += loss.Value(errors ? errors->SquaredNorm() : kFarOff * variance) / variance;
+      cost += loss.Value(errors ? errors->errors.squaredNorm() : kFarOff * variance) / variance;
     }
     return cost;
   }
@@ -130,7 +129,7 @@ class PooledViews {
   double Variance(const Camera& camera) const {
     std::vector<double> squares;
     for (const auto& errors : Evaluate(camera, false)) {
-      if (errors) squares.push_back(errors->SquaredNorm());
+      if (errors) squares.push_back(errors->errors.squaredNorm());
     }
     constexpr double kMin = 1e-8;  // exact corners
     return squares.empty() ? 1.0 : std::max(kMin, Median(std::move(squares)) / kChiSquaredMedian2);
@@ -191,7 +190,7 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
     for (const auto& errors : pooled.Evaluate(lens(best), true)) {
       if (!errors) continue;
       ++result.num_views;
-      const double weight = loss.Weight(errors->SquaredNorm()) / variance;
+      const double weight = loss.Weight(errors->errors.squaredNorm()) / variance;
       gradient += weight * errors->by_log_focal.dot(errors->errors);
       information += weight * errors->by_log_focal.squaredNorm();
     }
