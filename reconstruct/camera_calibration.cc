@@ -90,7 +90,6 @@ std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images
 MarkerAdjustmentOptions BoardOptions(int num_threads) {
   constexpr double kSquareSigma = 0.01, kFlatness = 0.02;  // of a side
   MarkerAdjustmentOptions options;
-  options.find_camera = true;
   options.print_tolerance = kSquareSigma;
   options.cloth_flatness = options.rigid_flatness = kFlatness;
   options.num_threads = num_threads;
