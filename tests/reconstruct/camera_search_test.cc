@@ -11,8 +11,7 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
-#include "tests/support/error_matchers.h"
-#include "tests/support/synthetic_scene.h"
+#include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {
 namespace {
@@ -30,14 +29,6 @@ SyntheticScene MakeScene(SceneKind kind, const Camera& camera, std::uint32_t see
   SyntheticScene scene = MakeSyntheticScene(options);
   AddNoise({kSearchNoisePx, 0, 0, 200, seed}, &scene);
   return scene;
-}
-
-std::vector<DatabaseImage> ImagesOf(const SyntheticScene& scene) {
-  std::vector<DatabaseImage> images;
-  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    images.push_back({static_cast<ImageId>(i + 1), 1, scene.frames[i]});
-  }
-  return images;
 }
 
 struct Found {
@@ -63,8 +54,8 @@ Found Find(const std::vector<DatabaseImage>& images, const std::map<CameraId, Ca
 }
 
 Found Find(const SyntheticScene& scene) {
-  return Find(ImagesOf(scene), {{1, UnknownCamera(scene.camera.width_px, scene.camera.height_px)}},
-              scene.layout);
+  return Find(DatabaseImages(scene),
+              {{1, UnknownCamera(scene.camera.width_px, scene.camera.height_px)}}, scene.layout);
 }
 
 // Relative.
@@ -100,7 +91,7 @@ TEST(CameraSearch, AnInsetOfAllCornersIsInTheSigmaOfTheFocalLength) {
   constexpr double kInsetPx = 0.2;
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
   const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
-  std::vector<DatabaseImage> images = ImagesOf(scene);
+  std::vector<DatabaseImage> images = DatabaseImages(scene);
   for (DatabaseImage& image : images) {
     for (MarkerDetection& marker : image.detections.markers) {
       const auto seen = marker.corners_in_image_px;
@@ -136,7 +127,8 @@ TEST(CameraSearch, AStraightLensNeedsNoManyParameters) {
 TEST(CameraSearch, AFalseClaimOfExifDoesNoHarm) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1300, 960, 540, -0.05}};
   const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 10);
-  const Found found = Find(ImagesOf(scene), {{1, UnknownCamera(1920, 1080, 5200)}}, scene.layout);
+  const Found found =
+      Find(DatabaseImages(scene), {{1, UnknownCamera(1920, 1080, 5200)}}, scene.layout);
   EXPECT_NEAR(FocalError(found, truth), 0.0, 0.004);
 }
 
@@ -144,7 +136,7 @@ TEST(CameraSearch, PortraitAndLandscapePicturesAreOneCamera) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 975, 530, -0.05}};
   const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 6);
   for (const int quarter_turns : {1, 3}) {
-    std::vector<DatabaseImage> images = ImagesOf(scene);
+    std::vector<DatabaseImage> images = DatabaseImages(scene);
     for (std::size_t i = 0; i < images.size(); i += 2) {
       images[i].camera_id = 2;
       for (MarkerDetection& marker : images[i].detections.markers) {
@@ -165,7 +157,7 @@ TEST(CameraSearch, ASmallZoomIsMeasuredByTwoCameras) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 960, 540, 0}};
   const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
   for (const double zoom : {1.0, 1.03}) {
-    std::vector<DatabaseImage> images = ImagesOf(scene);
+    std::vector<DatabaseImage> images = DatabaseImages(scene);
     for (std::size_t i = 8; i < images.size(); ++i) {
       for (MarkerDetection& marker : images[i].detections.markers) {
         for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
