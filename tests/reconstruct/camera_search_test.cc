@@ -12,6 +12,7 @@
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"
+#include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
 namespace {
@@ -90,18 +91,9 @@ TEST(CameraSearch, DrawnCamerasAreFoundWithinTheirSigmas) {
 TEST(CameraSearch, AnInsetOfAllCornersIsInTheSigmaOfTheFocalLength) {
   constexpr double kInsetPx = 0.2;
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
-  const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
-  std::vector<DatabaseImage> images = DatabaseImages(scene);
-  for (DatabaseImage& image : images) {
-    for (MarkerDetection& marker : image.detections.markers) {
-      const auto seen = marker.corners_in_image_px;
-      for (std::size_t i = 0; i < seen.size(); ++i) {
-        const auto next = seen[(i + 1) % 4], last = seen[(i + 3) % 4];
-        marker.corners_in_image_px[i] +=
-            kInsetPx * ((next - seen[i]).normalized() + (last - seen[i]).normalized());
-      }
-    }
-  }
+  SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
+  AddInset([](const MarkerDetection&) { return kInsetPx; }, &scene);
+  const std::vector<DatabaseImage> images = DatabaseImages(scene);
   const std::map<CameraId, Camera> guesses = {{1, UnknownCamera(1920, 1080)}};
   const Found unaware = Find(images, guesses, scene.layout);
   const Found aware = Find(images, guesses, scene.layout, kInsetPx);

@@ -134,12 +134,7 @@ TEST(BundleAdjustmentOptions, FaultsNameTheOption) {
   EXPECT_NO_THROW(BundleAdjustmentOptions{}.Check());
   BundleAdjustmentOptions options;
   options.min_track_length = 1;
-  try {
-    options.Check();
-    ADD_FAILURE() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--BundleAdjustment.min_track_length: 1"));
-  }
+  ExpectThrows<InputError>([&] { options.Check(); }, {"--BundleAdjustment.min_track_length: 1"});
   options = {};
   options.function_tolerance = std::nan("");
   EXPECT_THROW(options.Check(), InputError);

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/synthetic_scene.h"
+#include "tests/reconstruct/registration_fixture.h"
 #include "tests/support/true_model.h"
 
 namespace velamap {
@@ -16,16 +16,6 @@ constexpr int kForgotten = 900, kMisread = 901, kFalse = 902;
 
 class UnnamedMarkers : public testing::Test {
  protected:
-  UnnamedMarkers() : scene_(MakeSyntheticScene({})), model_(TrueModel(scene_)) {
-    for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
-      DatabaseImage image;
-      image.image_id = static_cast<ImageId>(i + 1);
-      image.camera_id = 1;
-      image.detections = scene_.frames[i];
-      images_.push_back(image);
-    }
-  }
-
   // Adds a detection beside the first marker of the image, or in its place.
   void Reject(int marker_id, const char* reason, double sides_away, DatabaseImage* image) const {
     RejectedDetection rejected{image->detections.markers.at(0), reason};
@@ -36,9 +26,9 @@ class UnnamedMarkers : public testing::Test {
     image->detections.rejected.push_back(rejected);
   }
 
-  SyntheticScene scene_;
-  Model model_;
-  std::vector<DatabaseImage> images_;
+  const SyntheticScene scene_ = MakeSyntheticScene({});
+  const Model model_ = TrueModel(scene_);
+  std::vector<DatabaseImage> images_ = DatabaseImages(scene_);
 };
 
 TEST_F(UnnamedMarkers, OnlyThoseThatStandOnTheirOwnAndAreSeenAsOftenAsOthers) {

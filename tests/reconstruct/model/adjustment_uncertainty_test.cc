@@ -4,15 +4,14 @@
 #include <fstream>
 #include <sstream>
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
-
-using testing::HasSubstr;
 
 class UncertaintyFile : public testing::Test {
  protected:
@@ -127,12 +126,8 @@ TEST_F(UncertaintyFile, EveryTruncationIsAnInputErrorThatNamesTheFile) {
   const std::string bytes = FileBytes();
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     WriteBytes(bytes.substr(0, size));
-    try {
-      ReadUncertainty(Folder());
-      ADD_FAILURE() << size << " bytes are read";
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(kUncertaintyFileName));
-    }
+    SCOPED_TRACE(size);
+    ExpectThrows<InputError>([&] { ReadUncertainty(Folder()); }, {kUncertaintyFileName});
   }
   WriteBytes(bytes + "x");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);

@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "tests/reconstruct/sheet_model.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -204,12 +205,9 @@ TEST_F(ModelFiles, MissingFilesAreNamed) {
 
 TEST_F(ModelFiles, UnwritablePathIsAnErrorThatNamesIt) {
   WriteBytes(dir_ / "file", "");
-  try {
-    WriteModel(AwkwardModel(), (dir_ / "file") / "0", ModelFormat::kBinary);
-    ADD_FAILURE() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr((dir_ / "file").string()));
-  }
+  ExpectThrows<InputError>(
+      [&] { WriteModel(AwkwardModel(), (dir_ / "file") / "0", ModelFormat::kBinary); },
+      {(dir_ / "file").string()});
 }
 
 TEST_F(ModelFiles, FailedWriteLeavesTheOldModel) {

@@ -13,7 +13,6 @@
 
 #include "importer/geometry/alignment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/problem/error_correlation.h"
 #include "tests/reconstruct/dense_covariance.h"
 #include "tests/reconstruct/scene_model.h"

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/support/synthetic_scene.h"
+#include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {
 namespace {
@@ -45,13 +45,7 @@ TEST(DictionaryDoubt, MarkersThatAreSeenAgainAreNot) {
   SyntheticSceneOptions options;
   for (const SceneKind kind : {SceneKind::kSail, SceneKind::kPlane, SceneKind::kCube}) {
     options.kind = kind;
-    std::vector<DatabaseImage> images;
-    for (const FrameDetections& frame : MakeSyntheticScene(options).frames) {
-      DatabaseImage image;
-      image.detections = frame;
-      images.push_back(image);
-    }
-    EXPECT_THAT(DictionaryDoubt(images), IsEmpty());
+    EXPECT_THAT(DictionaryDoubt(DatabaseImages(MakeSyntheticScene(options))), IsEmpty());
   }
   EXPECT_THAT(DictionaryDoubt({ImageOf({1, 2, 3, 4})}), IsEmpty());
 }
