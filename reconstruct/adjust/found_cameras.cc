@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
@@ -40,7 +39,7 @@ void WarnOfFoldedCameras(MarkerSolution* solution) {
 }
 
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
-                      const std::vector<std::string>& weaknesses) {
+                      const std::string& weakness) {
   constexpr double kMaxSigma = 0.05;  // relative
   for (const auto& [camera_id, found] : cameras) {
     const double focal_px = found.camera.params.front(), sigma_px = found.sigmas.front();
@@ -48,7 +47,7 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
     throw DataError(fmt::format(
         "these pictures do not determine the focal length of their camera ({:.0f} +- {:.0f} "
         "px){}{}; film the markers tilted, from near and far and from more sides",
-        focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
+        focal_px, sigma_px, weakness.empty() ? "" : ": ", weakness));
   }
 }
 

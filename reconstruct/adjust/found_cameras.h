@@ -19,8 +19,9 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
 void WarnOfFoldedCameras(MarkerSolution* solution);
 
 // Throws DataError where the images do not determine a focal length: its sigma is above 5 %.
+// `weakness` is what FindWeakGeometry() says.
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
-                      const std::vector<std::string>& weaknesses);
+                      const std::string& weakness);
 
 // Adds the effect of an inset of all corners to the sigmas of the focal lengths: an inset changes
 // the apparent foreshortening of the squares, and no picture shows it. `inset_as_scale` is 1 sigma

@@ -244,10 +244,9 @@ void MarkerAdjuster::Finish() {
   summary_.error_after_px = SummarizeReprojectionErrors(solution_.model);
   CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px,
                  !solution_.options.find_camera);
-  const std::vector<std::string> weaknesses =
-      FindWeakGeometry(solution_.model, summary_.uncertainty.points);
-  if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weaknesses);
-  solution_.warnings.insert(solution_.warnings.end(), weaknesses.begin(), weaknesses.end());
+  const std::string weakness = FindWeakGeometry(solution_.model, summary_.uncertainty.points);
+  if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weakness);
+  if (!weakness.empty()) solution_.warnings.push_back(weakness);
 }
 
 std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {

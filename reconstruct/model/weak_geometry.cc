@@ -139,7 +139,7 @@ std::string Reason(const Views& views) {
 
 }  // namespace
 
-std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points) {
+std::string FindWeakGeometry(const Model& model, const PointCovariance& points) {
   // If points are more uncertain than this fraction of the object's extent, there is no shape.
   constexpr double kMaxRelativeSigma = 0.2;
   if (points.IsEmpty()) return {};
@@ -154,7 +154,7 @@ std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovaria
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
     throw DataError("the images leave the shape undetermined: " + text);
   }
-  return {text};
+  return text;
 }
 
 bool IsWeakGeometryWarning(const std::string& warning) {
