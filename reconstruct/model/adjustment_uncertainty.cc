@@ -22,7 +22,14 @@ namespace {
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
 constexpr std::uint32_t kVersion = 5, kVersionWithoutHash = 4;
 
-// In the order of the file, after num_changes.
+// In the order of the file.
+constexpr std::array<double AdjustmentUncertainty::*, 8> kMembers = {
+    &AdjustmentUncertainty::relative_scale_sigma, &AdjustmentUncertainty::variance_factor,
+    &AdjustmentUncertainty::apparent_inset_px,    &AdjustmentUncertainty::apparent_inset_sigma_px,
+    &AdjustmentUncertainty::correlation_factor,   &AdjustmentUncertainty::share_above_4_sigma,
+    &AdjustmentUncertainty::rolling_shutter_s,    &AdjustmentUncertainty::rolling_shutter_sigma_s};
+
+// The same, after num_changes.
 constexpr std::array<double CalibrationEvidence::*, 9> kEvidenceMembers = {
     &CalibrationEvidence::chi_squared,      &CalibrationEvidence::focal_share,
     &CalibrationEvidence::distortion_share, &CalibrationEvidence::systematic_px,
@@ -148,12 +155,7 @@ std::uint64_t HashOfPoints(const Model& model) {
 void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, std::ostream* out) {
   Write(kMagic, sizeof(kMagic), out);
   Write(kVersion, out);
-  for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
-                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
-                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma,
-                             uncertainty.rolling_shutter_s, uncertainty.rolling_shutter_sigma_s}) {
-    Write(value, out);
-  }
+  for (const auto member : kMembers) Write(uncertainty.*member, out);
   const CalibrationEvidence& calibration = uncertainty.calibration;
   Write(static_cast<std::uint64_t>(calibration.num_changes), out);
   for (const auto member : kEvidenceMembers) Write(calibration.*member, out);
@@ -186,14 +188,7 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   if (version != kVersion && version != kVersionWithoutHash)
     reader.Fail(fmt::format("has the unknown version {}", version));
   AdjustmentUncertainty uncertainty;
-  uncertainty.relative_scale_sigma = reader.Read<double>();
-  uncertainty.variance_factor = reader.Read<double>();
-  uncertainty.apparent_inset_px = reader.Read<double>();
-  uncertainty.apparent_inset_sigma_px = reader.Read<double>();
-  uncertainty.correlation_factor = reader.Read<double>();
-  uncertainty.share_above_4_sigma = reader.Read<double>();
-  uncertainty.rolling_shutter_s = reader.Read<double>();
-  uncertainty.rolling_shutter_sigma_s = reader.Read<double>();
+  for (const auto member : kMembers) uncertainty.*member = reader.Read<double>();
   uncertainty.calibration.num_changes = static_cast<int>(reader.Read<std::uint64_t>());
   for (const auto member : kEvidenceMembers) {
     uncertainty.calibration.*member = reader.Read<double>();
