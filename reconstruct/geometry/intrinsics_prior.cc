@@ -40,14 +40,10 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
     const int distortion = prior.free[i] - BeginOfDistortion(prior.model);
     if (distortion < 0 || PowerOfRay(prior.model, distortion) == 0) continue;
+    // Only the rational model has so many parameters; its denominator moves the ray inwards.
+    const double sign = prior.free[i] < kBeginOfDenominator ? 1.0 : -1.0;
     gradient[static_cast<Eigen::Index>(i)] =
-        RelativeMovement(prior.model, distortion, kJudgedField * prior.max_ray_length);
-  }
-  // Parameters in the denominator of the rational model move the ray inwards.
-  if (prior.model == CameraModel::kFullOpenCV) {
-    for (std::size_t i = 0; i < prior.free.size(); ++i) {
-      if (prior.free[i] >= kBeginOfDenominator) gradient[static_cast<Eigen::Index>(i)] *= -1.0;
-    }
+        sign * RelativeMovement(prior.model, distortion, kJudgedField * prior.max_ray_length);
   }
   return gradient;
 }
