@@ -33,10 +33,6 @@ std::string PointText(int marker_id, int corner) {
 struct LogScales {
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
-
-  double DifferenceVariance(Eigen::Index i, Eigen::Index j) const {
-    return covariance(i, i) + covariance(j, j) - 2 * covariance(i, j);
-  }
 };
 
 LogScales MeasureScales(const std::vector<ScaleBar>& bars, const MarkerState& state,
@@ -95,8 +91,10 @@ BarSet FindAgreeing(const LogScales& scales, Eigen::Index seed) {
   constexpr int kMaxNumRounds = 10;
   BarSet set;
   for (Eigen::Index i = 0; i < scales.values.size(); ++i) {
-    const double sigma = std::sqrt(std::max(0.0, scales.DifferenceVariance(i, seed)));
-    const Difference difference{scales.values[i] - scales.values[seed], sigma};
+    const double variance =
+        scales.covariance(i, i) + scales.covariance(seed, seed) - 2 * scales.covariance(i, seed);
+    const Difference difference{scales.values[i] - scales.values[seed],
+                                std::sqrt(std::max(0.0, variance))};
     if (!difference.Contradicts()) set.insert(i);
   }
   for (int round = 0; round < kMaxNumRounds && set.size() > 1; ++round) {

@@ -48,17 +48,13 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
       "COLMAP's bundle_adjuster gave an implausible result: {}; log: {}", what, log_path));
 }
 
-bool RefinesCameras(const BundleAdjustmentOptions& options) {
-  return options.refine_focal_length || options.refine_principal_point ||
-         options.refine_extra_params;
-}
-
 // Checks that images, points, tracks and cameras came back: COLMAP's exit status is 0 even where it
 // failed. `before` is its input. Throws InputError where the distortion cannot be refined as the
 // options ask.
 void CheckStructure(const BundleAdjustmentOptions& options, const Model& before, const Model& after,
                     const std::string& log_path) {
-  const bool refines_cameras = RefinesCameras(options);
+  const bool refines_cameras =
+      options.refine_focal_length || options.refine_principal_point || options.refine_extra_params;
   if (after.images.size() != before.images.size()) {
     ThrowImplausible(
         fmt::format("{} of {} images came back", after.images.size(), before.images.size()),
