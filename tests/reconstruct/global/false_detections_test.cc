@@ -91,15 +91,8 @@ TEST(GlobalRegistration, RecurringFalseSquareIsOutvoted) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
   AddNoise({0.1, 0.0, 0.0, 0, 3}, &scene);
   // In every third image the id of marker 7 is read at the place of marker 21, which is hidden.
-  for (std::size_t i = 0; i < scene.frames.size(); i += 3) {
-    auto& markers = scene.frames[i].markers;
-    const auto find = [&markers](int id) {
-      return std::find_if(markers.begin(), markers.end(),
-                          [id](const auto& m) { return m.marker_id == id; });
-    };
-    if (find(7) == markers.end() || find(21) == markers.end()) continue;
-    find(7)->corners_in_image_px = find(21)->corners_in_image_px;
-    markers.erase(find(21));
+  for (const int frame_idx : ReadSevenAtTwentyOne(3, &scene)) {
+    RemoveDetection(21, &scene.frames[static_cast<std::size_t>(frame_idx)]);
   }
   const Registration registration = Register(scene);
   EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());

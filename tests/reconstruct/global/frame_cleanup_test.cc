@@ -1,7 +1,5 @@
 // The frames that cleanup leaves out; map_cleanup_test.cc has the markers.
 
-#include <algorithm>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,11 +36,7 @@ TEST(LeaveOutBlurredFrames, FrameThatAMarkerNeedsStays) {
   BlurFrames(1.2, TestSeed() + 1, &scene);
   // Marker 7 is seen by the blurred frames and by one more.
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    if (i == 5 || i == 10 || i == 15) continue;
-    auto& markers = scene.frames[i].markers;
-    markers.erase(std::remove_if(markers.begin(), markers.end(),
-                                 [](const auto& m) { return m.marker_id == 7; }),
-                  markers.end());
+    if (i != 5 && i != 10 && i != 15) RemoveDetection(7, &scene.frames[i]);
   }
   ASSERT_NE(FindDetection(7, &scene.frames[5]), nullptr);
   ASSERT_EQ(FindDetection(7, &scene.frames[15]) == nullptr, false);

@@ -28,19 +28,6 @@ TEST(Cleanup, TakesNothingOutOfAGoodMap) {
   EXPECT_THAT(grown.LeftOutFrames(), IsEmpty());
 }
 
-// In every `step`-th frame the id of marker 7 is read where marker 21 stands; the detection of 21
-// stays in the frame if `keep`.
-void ReadSevenAtTwentyOne(std::size_t step, bool keep, SyntheticScene* scene) {
-  for (std::size_t i = 0; i < scene->frames.size(); i += step) {
-    FrameDetections& frame = scene->frames[i];
-    MarkerDetection* seven = FindDetection(7, &frame);
-    MarkerDetection* twenty_one = FindDetection(21, &frame);
-    if (seven == nullptr || twenty_one == nullptr) continue;
-    seven->corners_in_image_px = twenty_one->corners_in_image_px;
-    if (!keep) frame.markers.erase(frame.markers.begin() + (twenty_one - frame.markers.data()));
-  }
-}
-
 TEST(VoteOnIds, IdAtTwoPlacesWithEqualSupportGoes) {
   SyntheticScene scene = SailWithNoise(16, false, TestSeed());
   for (std::size_t i = 0; i < scene.frames.size(); i += 2) {
@@ -51,12 +38,7 @@ TEST(VoteOnIds, IdAtTwoPlacesWithEqualSupportGoes) {
     }
     SortMarkers(&scene.frames[i]);
   }
-  for (std::size_t i = 1; i < scene.frames.size(); i += 2) {
-    auto& markers = scene.frames[i].markers;
-    markers.erase(std::remove_if(markers.begin(), markers.end(),
-                                 [](const auto& m) { return m.marker_id == 21; }),
-                  markers.end());
-  }
+  for (std::size_t i = 1; i < scene.frames.size(); i += 2) RemoveDetection(21, &scene.frames[i]);
   GrownMap grown(std::move(scene));
   VoteOnIds(&grown.global);
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(7));
@@ -65,7 +47,9 @@ TEST(VoteOnIds, IdAtTwoPlacesWithEqualSupportGoes) {
 
 TEST(VoteOnIds, FewFalseReadingsAreOutvoted) {
   SyntheticScene scene = SailWithNoise(15, false, TestSeed());
-  ReadSevenAtTwentyOne(3, false, &scene);
+  for (const int frame_idx : ReadSevenAtTwentyOne(3, &scene)) {
+    RemoveDetection(21, &scene.frames[static_cast<std::size_t>(frame_idx)]);
+  }
   GrownMap grown(std::move(scene));
   VoteOnIds(&grown.global);
   EXPECT_THAT(grown.DroppedIds(), IsEmpty());
@@ -75,13 +59,9 @@ TEST(VoteOnIds, PlaceOfABetterKnownMarkerIsNoSecondPlace) {
   SyntheticScene scene = SailWithNoise(18, false, TestSeed());
   // Marker 7 is seen in seven frames, three times at the place of 21, which all frames see.
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    auto& markers = scene.frames[i].markers;
-    if (i % 3 == 0 || i == 1) continue;
-    markers.erase(std::remove_if(markers.begin(), markers.end(),
-                                 [](const auto& m) { return m.marker_id == 7; }),
-                  markers.end());
+    if (i % 3 != 0 && i != 1) RemoveDetection(7, &scene.frames[i]);
   }
-  ReadSevenAtTwentyOne(6, true, &scene);
+  ReadSevenAtTwentyOne(6, &scene);
   GrownMap grown(std::move(scene));
   ASSERT_EQ(grown.global.problem.Marker(grown.map.MarkerIdx(7)).observation_idxs.size(), 7u);
   ASSERT_EQ(grown.global.NumFits(grown.map.MarkerIdx(7)), 4);

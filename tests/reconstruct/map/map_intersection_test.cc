@@ -151,25 +151,9 @@ TEST(PlaceMarker, TwoFramesThatDisagreeGiveNoPlace) {
   }
 }
 
-// The id of marker 7 is read where marker 21 stands in every `step`-th frame from `first` on;
-// returns those frames.
-std::vector<int> FramesThatReadSevenAtTwentyOne(std::size_t first, std::size_t step,
-                                                SyntheticScene* scene) {
-  std::vector<int> frame_idxs;
-  for (std::size_t i = first; i < scene->frames.size(); i += step) {
-    FrameDetections& frame = scene->frames[i];
-    MarkerDetection* seven = FindDetection(7, &frame);
-    const MarkerDetection* twenty_one = FindDetection(21, &frame);
-    if (seven == nullptr || twenty_one == nullptr) continue;
-    seven->corners_in_image_px = twenty_one->corners_in_image_px;
-    frame_idxs.push_back(static_cast<int>(i));
-  }
-  return frame_idxs;
-}
-
 TEST(PlaceMarker, FalseIdInAThirdOfTheFramesIsFoundElsewhere) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 15, false);
-  const std::vector<int> false_frames = FramesThatReadSevenAtTwentyOne(0, 3, &scene);
+  const std::vector<int> false_frames = ReadSevenAtTwentyOne(3, &scene);
   ASSERT_GE(false_frames.size(), 4u);
   const SceneMap map(std::move(scene));
   const MarkerPlacement placement =
@@ -183,7 +167,7 @@ TEST(PlaceMarker, FalseIdInAThirdOfTheFramesIsFoundElsewhere) {
 
 TEST(PlaceMarker, OneIdAtTwoPlacesHasAPlaceAndARestElsewhere) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 16, false);
-  const std::vector<int> false_frames = FramesThatReadSevenAtTwentyOne(0, 2, &scene);
+  const std::vector<int> false_frames = ReadSevenAtTwentyOne(2, &scene);
   const SceneMap map(std::move(scene));
   const int marker_idx = map.MarkerIdx(7);
   const MarkerPlacement placement =

@@ -234,12 +234,7 @@ TEST(SupportOf, ImagesThatMissItAreCounted) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
   int num_missing = 0;
   for (std::size_t i = 3; i < scene.frames.size(); ++i) {
-    auto& markers = scene.frames[i].markers;
-    const auto size = markers.size();
-    markers.erase(std::remove_if(markers.begin(), markers.end(),
-                                 [](const auto& m) { return m.marker_id == kMiddleId; }),
-                  markers.end());
-    num_missing += size != markers.size();
+    num_missing += RemoveDetection(kMiddleId, &scene.frames[i]);
   }
   ASSERT_GT(num_missing, 10);
   const SceneMap map(std::move(scene));

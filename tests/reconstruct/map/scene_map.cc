@@ -73,6 +73,13 @@ MarkerDetection* FindDetection(int marker_id, FrameDetections* frame) {
   return nullptr;
 }
 
+bool RemoveDetection(int marker_id, FrameDetections* frame) {
+  const MarkerDetection* detection = FindDetection(marker_id, frame);
+  if (detection == nullptr) return false;
+  frame->markers.erase(frame->markers.begin() + (detection - frame->markers.data()));
+  return true;
+}
+
 void SortMarkers(FrameDetections* frame) {
   std::sort(frame->markers.begin(), frame->markers.end(),
             [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
@@ -108,6 +115,19 @@ void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene) {
   }
 }
 
+std::vector<int> ReadSevenAtTwentyOne(std::size_t step, SyntheticScene* scene) {
+  std::vector<int> frame_idxs;
+  for (std::size_t i = 0; i < scene->frames.size(); i += step) {
+    FrameDetections& frame = scene->frames[i];
+    MarkerDetection* seven = FindDetection(7, &frame);
+    const MarkerDetection* twenty_one = FindDetection(21, &frame);
+    if (seven == nullptr || twenty_one == nullptr) continue;
+    seven->corners_in_image_px = twenty_one->corners_in_image_px;
+    frame_idxs.push_back(static_cast<int>(i));
+  }
+  return frame_idxs;
+}
+
 int PlantFalseMarker(int marker_id, const Eigen::Vector3d& shift_m, int num_frames,
                      SyntheticScene* scene) {
   int num_planted = 0;
@@ -125,7 +145,7 @@ int PlantFalseMarker(int marker_id, const Eigen::Vector3d& shift_m, int num_fram
       if (is_seen) detection->corners_in_image_px[corner] = *image_px;
     }
     num_planted += is_seen;
-    if (!is_seen) frame.markers.erase(frame.markers.begin() + (detection - frame.markers.data()));
+    if (!is_seen) RemoveDetection(marker_id, &frame);
   }
   return num_planted;
 }

@@ -41,6 +41,8 @@ SceneMap NoisySail(double corner_sigma_px, std::uint32_t seed);
 void SetSigma(double sigma_px, MapProblem* problem);
 
 MarkerDetection* FindDetection(int marker_id, FrameDetections* frame);
+// Returns whether the frame showed the marker.
+bool RemoveDetection(int marker_id, FrameDetections* frame);
 // Frames keep their markers by ascending id.
 void SortMarkers(FrameDetections* frame);
 
@@ -48,6 +50,9 @@ void SortMarkers(FrameDetections* frame);
 void ExchangeIds(double rate, std::uint32_t seed, SyntheticScene* scene);
 // Numbers the corners of `rate` of the detections from a wrong one.
 void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene);
+// The id of marker 7 is read where marker 21 stands, in every `step`-th frame that shows both.
+// Returns these frames.
+std::vector<int> ReadSevenAtTwentyOne(std::size_t step, SyntheticScene* scene);
 // Hides a marker, and shows the first `num_frames` frames that can see it a false square with its
 // id at another place, moved by `shift_m` in the world frame. Returns the number of frames that do.
 int PlantFalseMarker(int marker_id, const Eigen::Vector3d& shift_m, int num_frames,
