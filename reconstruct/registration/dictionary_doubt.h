@@ -11,8 +11,8 @@ namespace velamap {
 
 // With a wrong dictionary or polarity, codes are found by chance, most of them once, whereas a
 // print is seen again in other pictures. If most ids are seen in one image only, or the images hold
-// fewer than three markers on average, returns the count, such as `52 of 60 ids are seen in one of
-// the 40 images only`. Otherwise, and for fewer than two images with markers, returns an empty
+// fewer than three markers on average, returns the count, such as `52 of 60 ids are seen in only
+// one of the 40 images`. Otherwise, and for fewer than two images with markers, returns an empty
 // text.
 std::string DictionaryDoubt(const std::vector<DatabaseImage>& images);
 
