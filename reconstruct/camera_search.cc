@@ -205,8 +205,12 @@ class CameraSearch {
     constexpr int kMaxNumRounds = 4;
     constexpr double kSame = 1e-3;           // as a fraction of the larger side
     constexpr double kSameExplained = 5e-3;  // as a fraction of what is explained
+    LogInfo("from {}: registering the pictures and adjusting the camera", start.name);
     Outcome outcome = RunOnce(start.cameras);
     for (int round = 1; round < kMaxNumRounds; ++round) {
+      LogInfo(
+          "from {}: once more with a focal length of {:.1f} px, {:.0f} % of the corners explained",
+          start.name, MeanFocalLength(outcome.cameras.begin()->second), 100.0 * outcome.share);
       Outcome next;
       try {
         next = RunOnce(outcome.cameras);
