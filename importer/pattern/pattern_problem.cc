@@ -125,13 +125,15 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   constexpr double kUnheldSigma = 1e3;  // of the corners, px, and of dark and light
   constexpr double kBlurSigmaPx = 0.7, kGradientSigma = 0.15, kSurroundSigma = 0.3;
   // The light of the marker's cells and of the quiet zone differs little once the tone curve is
-  // known. With a looser prior, a narrow, dim quiet zone could be mistaken for a wide one.
-  constexpr double kInnerLightSigma = 0.02;
+  // known. Before a dark background, a narrow quiet zone looks almost like a wider and dimmer one:
+  // where its width is free, its light has to be known. In small cells the light also absorbs what
+  // sharpening and compression do to them.
+  const double inner_light_sigma = shows_margins ? 0.005 : 0.02;
   P::Vector sigma = P::Vector::Constant(kUnheldSigma);  // those of the margins follow
   sigma[P::kBlurU] = sigma[P::kBlurV] = kBlurSigmaPx;
   sigma[P::kGradientX] = sigma[P::kGradientY] = kGradientSigma;
   sigma[P::kSurround] = kSurroundSigma;
-  sigma[P::kInnerLight] = kInnerLightSigma;
+  sigma[P::kInnerLight] = inner_light_sigma;
   sigma.segment<4>(P::kBendU).setConstant(kBendOfDiagonal * problem->model.diagonal_px);
   problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
   ImageFormationParameters quiet_zone = formation;
