@@ -8,6 +8,7 @@ velamap_test(
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
     pattern/fit_equations_test.cc
+    pattern/image_formation_test.cc
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc
