@@ -57,10 +57,13 @@ double CovarianceOf(const PointCovariance& covariance, const PointGradient& a,
     return static_cast<std::size_t>(
         std::upper_bound(block_begins.begin(), block_begins.end(), row) - block_begins.begin() - 1);
   };
+  std::vector<std::vector<std::size_t>> b_in_block(covariance.blocks.size());
+  for (std::size_t j = 0; j < rows_b.begins.size(); ++j) {
+    b_in_block[block_of(rows_b.begins[j])].push_back(j);
+  }
   for (std::size_t i = 0; i < rows_a.begins.size(); ++i) {
     const std::size_t block = block_of(rows_a.begins[i]);
-    for (std::size_t j = 0; j < rows_b.begins.size(); ++j) {
-      if (block_of(rows_b.begins[j]) != block) continue;
+    for (const std::size_t j : b_in_block[block]) {
       result += rows_a.values[i].dot(
           covariance.blocks[block].block<3, 3>(rows_a.begins[i] - block_begins[block],
                                                rows_b.begins[j] - block_begins[block]) *
