@@ -98,6 +98,15 @@ TEST(CommandLineTest, UnknownCommandNamesTheNearest) {
   EXPECT_THAT(run.out, IsEmpty());
 }
 
+TEST(CommandLineTest, UnknownOptionNamesTheNearest) {
+  const ProgramRun run = RunVelamap({"marker_importer", "--Video.frame_stp", "2"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--Video.frame_stp"));
+  EXPECT_THAT(run.err, HasSubstr("did you mean --Video.frame_step?"));
+  EXPECT_THAT(run.err, HasSubstr("velamap marker_importer --help"));
+  EXPECT_EQ(NumErrorLines(run.err), 1);
+}
+
 TEST(CommandLineTest, ProjectFileServesAllCommands) {
   const TempDir temp_dir;
   const std::string file = (temp_dir / "project.ini").string();
@@ -130,6 +139,18 @@ TEST(CommandLineTest, OldNamesAreUnderstoodWithAWarning) {
   EXPECT_THAT(backend.err, HasSubstr("--backend ceres: an old name; write markers"));
   EXPECT_THAT(backend.err, HasSubstr("--layout_path: missing"));  // which markers needs
   for (const ProgramRun& run : {prior, backend}) EXPECT_EQ(NumErrorLines(run.err), 1);
+}
+
+TEST(CommandLineTest, TwoNamesOfOneOptionAreAnError) {
+  const ProgramRun central = RunVelamap(
+      {"frame_registrator", "--central_frame", "3", "--Registration.central_frame", "3"});
+  EXPECT_EQ(central.exit_code, 2);
+  EXPECT_THAT(central.err,
+              HasSubstr("--central_frame and --Registration.central_frame: two names"));
+  const ProgramRun prior =
+      RunVelamap({"marker_importer", "--prior_shape_path", "a", "--map_path", "a"});
+  EXPECT_EQ(prior.exit_code, 2);
+  EXPECT_THAT(prior.err, HasSubstr("--prior_shape_path and --map_path: two names"));
 }
 
 TEST(CommandLineTest, UnknownNamesListWhatThereIs) {

@@ -132,6 +132,7 @@ TEST(OptionParserTest, RefusesBadValues) {
   EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.count", "3x"}), HasSubstr("--Walk.count: '3x'"));
   EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.count", "99999999999"}), HasSubstr("--Walk.count"));
   EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.length", "nan"}), HasSubstr("--Walk.length: 'nan'"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.length", "1,5"}), HasSubstr("--Walk.length: '1,5'"));
   EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.yes", "true"}), HasSubstr("0 (no) or 1 (yes)"));
   EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.yes"}), HasSubstr("Walk.yes"));
 }
