@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -13,23 +12,18 @@
 
 #include "importer/video/frame_source.h"
 #include "importer/video/video_decoder.h"
+#include "tests/importer/video/grey_clip.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
 
-constexpr int kNumEncoded = 75, kKeyDistance = 12;
+constexpr int kKeyDistance = 12;
 
 struct SpoiltClip {
   const char* file_name;
   const char* encoding;  // options of ffmpeg
 };
-
-std::string SpoiltClipName(const testing::TestParamInfo<SpoiltClip>& info) {
-  std::string name = info.param.file_name;
-  name[name.find('.')] = '_';
-  return name;
-}
 
 std::string SpoiltBytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -41,11 +35,7 @@ void WriteSpoilt(const std::string& path, const std::string& bytes) {
 }
 
 void EncodeClip(const std::string& path, const std::string& encoding) {
-  const std::string command = fmt::format(
-      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate=25 -frames:v {} "
-      "-vf hue=s=0,format=yuv420p -threads 1 -g {} {} '{}'",
-      kNumEncoded, kKeyDistance, encoding, path);
-  ASSERT_EQ(std::system(command.c_str()), 0) << command << ": is ffmpeg installed?";
+  MakeGreyClip(path, fmt::format("-g {} {}", kKeyDistance, encoding));
 }
 
 struct DecodedFrame {
@@ -73,7 +63,7 @@ class DamagedVideoTest : public testing::TestWithParam<SpoiltClip> {
 
 TEST_P(DamagedVideoTest, WholeFramesAreThoseOfTheUndamagedFile) {
   const std::map<long, DecodedFrame> good = DecodeAll(path_, 2);
-  EXPECT_EQ(good.size(), static_cast<std::size_t>(kNumEncoded));
+  EXPECT_EQ(good.size(), static_cast<std::size_t>(kNumClipFrames));
   for (const auto& [time_ms, frame] : good) EXPECT_TRUE(frame.is_whole) << time_ms;
   std::string bytes = SpoiltBytes(path_);
   for (std::size_t i = 0; i < 400; ++i) bytes[bytes.size() * 2 / 5 + i] ^= 0x5a;
@@ -90,8 +80,8 @@ TEST_P(DamagedVideoTest, WholeFramesAreThoseOfTheUndamagedFile) {
     }
     const auto num_whole = std::count_if(is_whole.begin(), is_whole.end(),
                                          [](const auto& frame) { return frame.second; });
-    EXPECT_LT(num_whole, kNumEncoded);
-    EXPECT_GE(num_whole, kNumEncoded - 2 * kKeyDistance) << "the next key frame ends the damage";
+    EXPECT_LT(num_whole, kNumClipFrames);
+    EXPECT_GE(num_whole, kNumClipFrames - 2 * kKeyDistance) << "the next key frame ends the damage";
     if (num_threads == 1) expected = is_whole;
     EXPECT_EQ(is_whole, expected) << num_threads << " threads";
   }
@@ -106,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Clips, DamagedVideoTest,
                                          SpoiltClip{"with_checksums.mp4",
                                                     "-c:v libx265 -crf 10 -x265-params "
                                                     "log-level=none:keyint=12:bframes=3:hash=1"}),
-                         SpoiltClipName);
+                         ClipName<SpoiltClip>);
 
 TEST(DamagedVideo, FramesAreReadAndNotUsed) {
   const TempDir dir;

@@ -12,13 +12,11 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "tests/importer/video/grey_clip.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
-
-constexpr int kNumFrames = 75;
-constexpr double kFramesPerSecond = 25.0;
 
 struct EncodedClip {
   const char* file_name;
@@ -26,21 +24,6 @@ struct EncodedClip {
   bool can_count;               // whether frames can be counted without decoding
   double max_difference = 1.0;  // of grey levels, from OpenCV's
 };
-
-std::string ClipName(const testing::TestParamInfo<EncodedClip>& info) {
-  std::string name = info.param.file_name;
-  name[name.find('.')] = '_';
-  return name;
-}
-
-// Frames are grey, so that no colour is too saturated for BGR, and differ from each other.
-void MakeClip(const std::string& path, const std::string& encoding) {
-  const std::string command = fmt::format(
-      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate={} -frames:v {} "
-      "-vf hue=s=0,format=yuv420p -threads 1 {} '{}'",
-      kFramesPerSecond, kNumFrames, encoding, path);
-  ASSERT_EQ(std::system(command.c_str()), 0) << command << ": is ffmpeg installed?";
-}
 
 struct ReadFrame {
   int number = 0;
@@ -60,7 +43,7 @@ std::vector<ReadFrame> ReadAll(const std::string& path, int skip_to) {
 
 class VideoDecoderTest : public testing::TestWithParam<EncodedClip> {
  protected:
-  void SetUp() override { ASSERT_NO_FATAL_FAILURE(MakeClip(path_, GetParam().encoding)); }
+  void SetUp() override { ASSERT_NO_FATAL_FAILURE(MakeGreyClip(path_, GetParam().encoding)); }
 
   TempDir dir_;
   std::string path_ = dir_ / GetParam().file_name;
@@ -82,7 +65,7 @@ TEST_P(VideoDecoderTest, YieldsTheFramesThatOpenCvYields) {
     // times of decoding where times of presentation are missing.
     const double time_ms = capture.get(cv::CAP_PROP_POS_MSEC);
     if (path_.find("unknown") != std::string::npos) {
-      EXPECT_NEAR(frames[i].time_s, static_cast<double>(i) / kFramesPerSecond, 1e-6);
+      EXPECT_NEAR(frames[i].time_s, static_cast<double>(i) / kClipFramesPerSecond, 1e-6);
     } else if (time_ms > 0) {
       EXPECT_NEAR(frames[i].time_s, 1e-3 * time_ms, 1e-6) << i;
     }
@@ -132,11 +115,11 @@ INSTANTIATE_TEST_SUITE_P(
         EncodedClip{"packed.mov", "-pix_fmt uyvy422 -c:v rawvideo", false, 2.0},
         EncodedClip{"m.avi", "-c:v mjpeg -q:v 2", true},
         EncodedClip{"vp9.webm", "-c:v libvpx-vp9 -g 12 -cpu-used 8", false}),
-    ClipName);
+    ClipName<EncodedClip>);
 
 TEST(VideoDecoder, CutByTheContainer) {
   const TempDir dir;
-  ASSERT_NO_FATAL_FAILURE(MakeClip(dir / "whole.mp4", "-c:v libx264 -g 12 -bf 3"));
+  ASSERT_NO_FATAL_FAILURE(MakeGreyClip(dir / "whole.mp4", "-c:v libx264 -g 12 -bf 3"));
   // The clip begins in the middle of a group of pictures, which the file keeps.
   const std::string command = fmt::format("ffmpeg -loglevel error -y -ss 0.7 -i '{}' -c copy '{}'",
                                           (dir / "whole.mp4").string(), (dir / "cut.mp4").string());
@@ -195,12 +178,12 @@ TEST(VideoDecoder, PicturesAreTurnedAsTheDisplayMatrixSays) {
 
 TEST(VideoDecoder, TimesDoNotRunBackwardsBehindACut) {
   const TempDir dir;
-  ASSERT_NO_FATAL_FAILURE(MakeClip(dir / "once.ts", "-c:v libx264 -g 12 -bf 3"));
+  ASSERT_NO_FATAL_FAILURE(MakeGreyClip(dir / "once.ts", "-c:v libx264 -g 12 -bf 3"));
   const std::string command = fmt::format("cat '{0}' '{0}' > '{1}'", (dir / "once.ts").string(),
                                           (dir / "twice.ts").string());
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::vector<ReadFrame> frames = ReadAll(dir / "twice.ts", 0);
-  ASSERT_GT(frames.size(), 2 * kNumFrames - 6u);
+  ASSERT_GT(frames.size(), 2 * kNumClipFrames - 6u);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     EXPECT_GT(frames[i].time_s, frames[i - 1].time_s) << i;
     EXPECT_LT(frames[i].time_s, frames[i - 1].time_s + 0.5) << i;
