@@ -117,13 +117,20 @@ double InsetSigmaByModel(const State& winner, const State& balanced) {
   return std::hypot(kOfBlur, kOfShift * shift_blurs) * Median(std::move(blurs_px));
 }
 
+FormationEstimate Unknown() {
+  FormationEstimate unknown;
+  // How far the sRGB curve of most cameras moves edges of the usual sharpness.
+  unknown.inset_sigma_px = 0.2;
+  return unknown;
+}
+
 }  // namespace
 
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   constexpr int kFewIterations = 2;
-  if (samples.empty()) return {};
+  if (samples.size() < kMinFormationSamples) return Unknown();
   // Some of the samples decide which description of the camera is right, and nearly give its
   // parameters; then all take few steps.
   const FormationPriors priors = PriorsFor(samples);
@@ -135,12 +142,12 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
     KeepOnly(by_gray.sample_idxs, &by_light);
     if (!by_gray.samples.empty()) break;
   }
-  if (by_gray.samples.empty()) return {};
+  if (by_gray.samples.empty()) return Unknown();
   const bool light_wins = LightWins(priors, num_threads, &by_gray, &by_light);
   const State& likely = light_wins ? by_light : by_gray;
   State winner = Start(samples, priors, std::exp(likely.parameters[0]),
                        likely.formation->parameters(), num_threads);
-  if (winner.samples.empty()) return {};
+  if (winner.samples.size() < kMinFormationSamples) return Unknown();
   winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, num_threads);
   Minimize(priors, kFewIterations, num_threads, &winner);
   const BalancedEdges balanced = WithBalancedEdges(winner, num_threads);

@@ -4,12 +4,15 @@
 
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "importer/formation/fitted_sample.h"
 #include "importer/pattern/formation_estimate.h"
 
 namespace velamap {
+
+constexpr std::size_t kMinFormationSamples = 2;
 
 // Levenberg-Marquardt over gamma, S, sharpening, its radius, the ink's spread and the camera's
 // shift of edges, with a Cauchy loss and priors around a usual camera and printer; the samples are
@@ -18,7 +21,8 @@ namespace velamap {
 // of edges and of outlines then follow the places of inner edges (balanced_edges.h), and pixels at
 // the corners of outlines get the weight that their residuals ask for. `is_inverted`: the samples
 // hold 255 minus the recorded grey values. The number of threads (0: one per core) does not change
-// the result.
+// the result. If fewer than kMinFormationSamples can be fitted, the parameters are the defaults,
+// with the inset that an unknown camera may cause.
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads = 1);
 

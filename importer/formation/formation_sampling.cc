@@ -18,10 +18,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kMinSamples = 2;
 constexpr double kMinSidePx = 12.0;
-// How far the sRGB curve of most cameras moves edges of the usual sharpness.
-constexpr double kUnknownInsetPx = 0.2;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
 // The number of samples per frame. Each small marker contributes less information and takes less
@@ -149,8 +146,9 @@ std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_
   for (int stride = first_stride; has_more; stride = std::min(2 * stride, kMaxStride)) {
     has_more = SampleFrames(detector, kNumFrames, stride, QuotaOfFrame(kNumFrames), num_threads,
                             source, &samples);
-    const int num_enough = stride == kMaxStride ? kMinSamples : kQuota.num_large / 2;
-    if (static_cast<int>(samples.size()) >= num_enough) break;
+    const std::size_t num_enough =
+        stride == kMaxStride ? kMinFormationSamples : kQuota.num_large / 2;
+    if (samples.size() >= num_enough) break;
   }
   return samples;
 }
@@ -184,20 +182,18 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   };
   std::sort(samples.begin(), samples.end(),
             [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
-  FormationEstimate estimate;
-  if (static_cast<int>(samples.size()) >= kMinSamples) {
+  if (samples.size() >= kMinFormationSamples) {
     LogInfo("estimating how camera and print change the edges of {} markers", samples.size());
-    estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
-  if (estimate.num_samples < kMinSamples) {
+  const FormationEstimate estimate =
+      EstimateFormation(samples, detector.options.inverted, num_threads);
+  if (estimate.num_samples == 0) {
     LogWarning(
         "{}: too few markers are large and sharp enough to show what the camera does to edges; its "
         "grey values are taken to be proportional to light, which may move each corner by {:.1f} "
         "px",
-        image_path, kUnknownInsetPx);
-    FormationEstimate unknown;
-    unknown.inset_sigma_px = kUnknownInsetPx;
-    return unknown;
+        image_path, estimate.inset_sigma_px);
+    return estimate;
   }
   const ImageFormationParameters& found = estimate.parameters;
   LogInfo(

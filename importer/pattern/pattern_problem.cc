@@ -128,12 +128,12 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   // known. Before a dark background, a narrow quiet zone looks almost like a wider and dimmer one:
   // where its width is free, its light has to be known. In small cells the light also absorbs what
   // sharpening and compression do to them.
-  const double inner_light_sigma = shows_margins ? 0.005 : 0.02;
+  constexpr double kKnownLightSigma = 0.005, kInnerLightSigma = 0.02;
   P::Vector sigma = P::Vector::Constant(kUnheldSigma);  // those of the margins follow
   sigma[P::kBlurU] = sigma[P::kBlurV] = kBlurSigmaPx;
   sigma[P::kGradientX] = sigma[P::kGradientY] = kGradientSigma;
   sigma[P::kSurround] = kSurroundSigma;
-  sigma[P::kInnerLight] = inner_light_sigma;
+  sigma[P::kInnerLight] = shows_margins ? kKnownLightSigma : kInnerLightSigma;
   sigma.segment<4>(P::kBendU).setConstant(kBendOfDiagonal * problem->model.diagonal_px);
   problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
   ImageFormationParameters quiet_zone = formation;

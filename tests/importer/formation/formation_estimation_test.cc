@@ -178,13 +178,13 @@ TEST(FormationEstimation, SmallMarkersTellTheirQuietZoneTogether) {
   }
 }
 
-// Up to 30 grey levels, all samples can be fitted.
+// Up to 30 grey levels, all samples can be fitted, and hardly any at 40.
 TEST(FormationEstimation, NoiseWidensTheSigmaOfTheInset) {
   std::mt19937 random(TestSeed());
   MarkerGridOptions scene = DrawScene(&random);
   scene.side_px = 30;
   double before_px = 0.0;
-  for (const double noise_sigma : {1.0, 10.0, 20.0, 30.0}) {
+  for (const double noise_sigma : {1.0, 10.0, 20.0, 30.0, 40.0}) {
     scene.rendering.noise_sigma = noise_sigma;
     const double sigma_px = EstimateFormation(Samples(MakeMarkerGrid(scene)), false).inset_sigma_px;
     EXPECT_GT(sigma_px, before_px);
@@ -328,7 +328,9 @@ TEST(FormationEstimation, CompressedSmallCellsDoNotDrawOutCorners) {
 }
 
 TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
-  EXPECT_EQ(EstimateFormation({}, false).num_samples, 0);
+  const FormationEstimate estimate = EstimateFormation({}, false);
+  EXPECT_EQ(estimate.num_samples, 0);
+  EXPECT_EQ(estimate.inset_sigma_px, 0.2);
 }
 
 }  // namespace
