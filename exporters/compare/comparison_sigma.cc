@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "exporters/shape/joint_covariance.h"
+#include "exporters/shape/shape_sigma.h"
 #include "importer/geometry/symmetric_eigen.h"
 
 namespace velamap {
@@ -26,10 +27,9 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   for (int axis = 0; axis < 3; ++axis) {
     double mean = 0.0;
     for (const int corner : corners) mean += variance(corner, axis) / num_corners;
-    // The sigma of the centre gives the common part. The individual parts sum to zero, so that they
-    // do not move the centre, and each has a variance of 3/4 of `own`.
+    // The sigma of the centre gives the common part.
     const double common = has_center ? variance(0, axis) : 0.0;
-    const double own = std::max(0.0, mean - common) * 4.0 / 3.0;
+    const double own = OwnVarianceOfCorners(mean, common);
     for (Eigen::Index i = 0; i < num_corners; ++i) {
       for (Eigen::Index j = 0; j < num_corners; ++j) {
         double& entry = block(3 * i + axis, 3 * j + axis);

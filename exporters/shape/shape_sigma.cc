@@ -18,6 +18,10 @@ void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
   }
 }
 
+double OwnVarianceOfCorners(double mean_of_corners_m2, double of_center_m2) {
+  return std::max(0.0, mean_of_corners_m2 - of_center_m2) * 4.0 / 3.0;
+}
+
 PointGradient DistanceGradient(const ShapeMarker& marker1, int corner1, const ShapeMarker& marker2,
                                int corner2) {
   const Eigen::Vector3d difference =

@@ -15,6 +15,11 @@ namespace velamap {
 void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
                       PointGradient* gradient);
 
+// The corners of a marker share the error of its centre and have errors of their own, which do not
+// move the centre: independent ones less their mean. The variance of these independent errors, m^2,
+// from the mean variance of the corners and the variance of the centre.
+double OwnVarianceOfCorners(double mean_of_corners_m2, double of_center_m2);
+
 // Gradient of the distance between two points of the shape (corner 0 is the centre), which have to
 // be known. A distance of zero has no direction and gets an empty gradient.
 PointGradient DistanceGradient(const ShapeMarker& marker1, int corner1, const ShapeMarker& marker2,

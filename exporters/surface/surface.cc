@@ -242,9 +242,8 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   const MarkerNoise noise = DescribeNoise(sorted);
   // An interpolating surface keeps the chord lengths, which make the fairest curves through points.
   const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
-  const bool has_markers_between = !sorted.markers.empty();
-  SurfaceParameters parameters = AssignParameters(
-      sorted.lines, has_markers_between || (!interpolates && HasTilts(sorted)), ends);
+  const bool shows_between = !sorted.markers.empty() || (!interpolates && HasTilts(sorted));
+  SurfaceParameters parameters = AssignParameters(sorted.lines, shows_between, ends);
   const OpenSides open = OpenSidesOf(parameters, ends.edges);
   SetCorners(sorted.by_id, &parameters);
   SmoothSurface smooth;

@@ -7,11 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/shape_sigma.h"
+
 namespace velamap {
 namespace {
 
-// Each corner has the errors of the centre and some of its own, which are independent and sum to
-// zero (comparison_sigma.h); a fourth of their variance is that of the tilt.
+// A fourth of the variance of the corners' own errors.
 std::optional<double> TiltSigma(const ShapeMarker& marker, double center_sigma_m) {
   constexpr double kMinOfCenter = 0.05;  // rounded sigmas, or the same for corners and centre
   double sum_m2 = 0.0;
@@ -19,8 +20,8 @@ std::optional<double> TiltSigma(const ShapeMarker& marker, double center_sigma_m
     if (!marker.sigma_m[corner]) return std::nullopt;
     sum_m2 += std::pow(SigmaOfCoordinate(*marker.sigma_m[corner]), 2);
   }
-  const double own_m2 = (sum_m2 / kNumCorners - center_sigma_m * center_sigma_m) * 4 / 3;
-  return std::max(std::sqrt(std::max(own_m2, 0.0)) / 2, kMinOfCenter * center_sigma_m);
+  const double own_m2 = OwnVarianceOfCorners(sum_m2 / kNumCorners, center_sigma_m * center_sigma_m);
+  return std::max(std::sqrt(own_m2) / 2, kMinOfCenter * center_sigma_m);
 }
 
 std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,

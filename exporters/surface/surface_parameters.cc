@@ -54,7 +54,7 @@ void CheckExtension(const SurfaceOptions& options,
 
 }  // namespace
 
-SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool has_markers_between,
+SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool shows_between,
                                    const SurfaceOptions& options) {
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
@@ -95,7 +95,7 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   }
   const int num_spans_u = std::clamp(static_cast<int>(max_points) - 1, 1, kMaxSpans);
   const int num_gaps = static_cast<int>(rows.size()) - 1;
-  const int num_spans_v = std::min(has_markers_between ? 2 * num_gaps : num_gaps, kMaxSpans);
+  const int num_spans_v = std::min(shows_between ? 2 * num_gaps : num_gaps, kMaxSpans);
   parameters.degree_v = std::min(num_gaps, 3);
   parameters.knots_u = ClampedKnots(parameters.degree_u, QuantileKnots(all_us, num_spans_u));
   std::vector<double> interior_v;

@@ -31,10 +31,10 @@ struct SurfaceParameters {
 };
 
 // Needs at least two lines with at least three markers each. u comes from MakeSurfaceRows
-// (surface_rows.h); v sums the mean distances between neighbouring rows. `has_markers_between`
-// doubles the knots in v, so that the surface can follow markers between the lines. Throws the same
-// errors as FitSurface.
-SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool has_markers_between,
+// (surface_rows.h); v sums the mean distances between neighbouring rows. `shows_between`: markers
+// between the lines, or tilts, show the surface there; it doubles the knots in v, so that the
+// surface can follow them. Throws the same errors as FitSurface.
+SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool shows_between,
                                    const SurfaceOptions& options);
 
 }  // namespace velamap
