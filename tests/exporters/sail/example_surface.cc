@@ -104,4 +104,16 @@ double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth) 
   return largest;
 }
 
+double TruthRms(const SplineSurface& surface, const SurfaceTruth& truth) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 1; i < 20; ++i) {
+    for (int j = 1; j < 20; ++j) points.push_back(truth(i / 20.0, j / 20.0));
+  }
+  std::vector<double> distances;
+  for (const SurfaceFoot& foot : ProjectOnSurface(surface, points)) {
+    distances.push_back(foot.distance_m);
+  }
+  return ComputeStatistics(distances).rms;
+}
+
 }  // namespace velamap

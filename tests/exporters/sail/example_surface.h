@@ -52,6 +52,9 @@ void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input);
 // The largest distance of a marker in use from the surface, m.
 double LargestResidual(const FittedSurface& fitted);
 
+// Root mean square distance of the true points from the surface, away from the edges, m.
+double TruthRms(const SplineSurface& surface, const SurfaceTruth& truth);
+
 // The largest distance of the true points of a dense grid from the surface, m.
 double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth);
 

@@ -1,5 +1,6 @@
 #include "exporters/sail/sail_shape.h"
 
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -28,6 +29,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::Not;
+using testing::StartsWith;
 
 SailShape Compute(const Sail& sail, const SailOptions& options = {}) {
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
@@ -191,11 +193,15 @@ TEST(ShapeExporterFrame, ResultsOfDifferentWorldsAreInOneFrame) {
   TransformModel(ExampleSim3(7.0), &moved);
   Layout layout = ExampleLayout();
   layout.reference_part = "hull";
-  for (const char* text : {"reference_part", "lines", "1,3,6"}) {
+  for (const auto& [text, name] :
+       std::map<std::string, std::string>{{"reference_part", "reference part hull"},
+                                          {"lines", "lines"},
+                                          {"1,3,6", "markers 1 3 6"}}) {
     ShapeExporterOptions options;
     options.frame = ParseFrameChoice(text, "--frame");
     const ShapeExportReport a = ExportShape(ExampleModel(), layout, options);
     const ShapeExportReport b = ExportShape(moved, layout, options);
+    EXPECT_THAT(a.frame.name, StartsWith(name));
     EXPECT_EQ(a.frame.name, b.frame.name);
     ASSERT_EQ(a.shape.markers.size(), b.shape.markers.size());
     for (std::size_t i = 0; i < a.shape.markers.size(); ++i) {

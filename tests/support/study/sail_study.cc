@@ -63,6 +63,37 @@ double Between(const std::vector<double>& vs, const std::vector<double>& values,
   return values[k - 1] + part * (values[k] - values[k - 1]);
 }
 
+// The corners lie on the cloth. All of them share the noise of their mean.
+SurfaceMarker DrawMarker(int marker_id, const Surface& sail, const Eigen::Vector2d& uv,
+                         double sigma_m, std::mt19937* random) {
+  constexpr double kHalfSide_m = 0.05;
+  std::normal_distribution<double> unit(0, 1);
+  const auto draw = [&](double sigma) -> Eigen::Vector3d {
+    return sigma * Eigen::Vector3d(unit(*random), unit(*random), unit(*random));
+  };
+  SurfaceMarker marker{marker_id, Eigen::Vector3d::Zero(), sigma_m, {}, kTiltNoise * sigma_m};
+  const Derivatives jet = Differentiate(sail, uv);
+  Eigen::Matrix<double, 3, 2> tangents, sides;
+  tangents << jet.u, jet.v;
+  sides.col(0) = jet.u.normalized();
+  sides.col(1) = jet.u.cross(jet.v).cross(jet.u).normalized();
+  const Eigen::Matrix2d uv_from_sides =
+      (tangents.transpose() * tangents).inverse() * tangents.transpose() * sides;
+  Eigen::Vector3d mean_noise = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector2d& side : {Eigen::Vector2d(-1, 1), Eigen::Vector2d(1, 1),
+                                      Eigen::Vector2d(1, -1), Eigen::Vector2d(-1, -1)}) {
+    const Eigen::Vector3d noise = draw(2 * kTiltNoise * sigma_m);
+    marker.corners_in_shape_m.push_back(sail(uv + uv_from_sides * (kHalfSide_m * side)) + noise);
+    mean_noise += noise / 4;
+  }
+  const Eigen::Vector3d shared = draw(sigma_m) - mean_noise;
+  for (Eigen::Vector3d& corner : marker.corners_in_shape_m) {
+    corner += shared;
+    marker.x_in_shape_m += corner / 4;
+  }
+  return marker;
+}
+
 }  // namespace
 
 Surface DrawSail(std::mt19937* random) {
@@ -100,41 +131,6 @@ SailLines DrawLines(const Surface& sail, std::mt19937* random) {
 double MarkerSigma(double sigma_m, double fraction) {
   return sigma_m * (1 + 2 * std::pow(2 * fraction - 1, 4));
 }
-
-namespace {
-
-// The corners lie on the cloth. All of them share the noise of their mean.
-SurfaceMarker DrawMarker(int marker_id, const Surface& sail, const Eigen::Vector2d& uv,
-                         double sigma_m, std::mt19937* random) {
-  constexpr double kHalfSide_m = 0.05;
-  std::normal_distribution<double> unit(0, 1);
-  const auto draw = [&](double sigma) -> Eigen::Vector3d {
-    return sigma * Eigen::Vector3d(unit(*random), unit(*random), unit(*random));
-  };
-  SurfaceMarker marker{marker_id, Eigen::Vector3d::Zero(), sigma_m, {}, kTiltNoise * sigma_m};
-  const Derivatives jet = Differentiate(sail, uv);
-  Eigen::Matrix<double, 3, 2> tangents, sides;
-  tangents << jet.u, jet.v;
-  sides.col(0) = jet.u.normalized();
-  sides.col(1) = jet.u.cross(jet.v).cross(jet.u).normalized();
-  const Eigen::Matrix2d uv_from_sides =
-      (tangents.transpose() * tangents).inverse() * tangents.transpose() * sides;
-  Eigen::Vector3d mean_noise = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector2d& side : {Eigen::Vector2d(-1, 1), Eigen::Vector2d(1, 1),
-                                      Eigen::Vector2d(1, -1), Eigen::Vector2d(-1, -1)}) {
-    const Eigen::Vector3d noise = draw(2 * kTiltNoise * sigma_m);
-    marker.corners_in_shape_m.push_back(sail(uv + uv_from_sides * (kHalfSide_m * side)) + noise);
-    mean_noise += noise / 4;
-  }
-  const Eigen::Vector3d shared = draw(sigma_m) - mean_noise;
-  for (Eigen::Vector3d& corner : marker.corners_in_shape_m) {
-    corner += shared;
-    marker.x_in_shape_m += corner / 4;
-  }
-  return marker;
-}
-
-}  // namespace
 
 SurfaceInput DrawMarkers(const Surface& sail, const SailLines& lines, double sigma_m,
                          std::mt19937* random) {
