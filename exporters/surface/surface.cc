@@ -90,23 +90,14 @@ void AddBetween(const SortedInput& sorted, const SplineSurface& surface,
   SetCorners(sorted.by_id, parameters);
 }
 
-// Mean distance of the points from the surface, along its normals.
-double DistanceOf(const SplineSurface& surface, SurfaceObservation observation) {
-  MoveToFeet(surface, &observation);
-  double sum_m = 0.0;
-  for (const PlacedPoint& point : observation.points) {
-    const SurfaceJet jet = EvaluateJet(surface, point.u, point.v);
-    sum_m += jet.normal.dot(point.x_in_shape_m - jet.x);
-  }
-  return sum_m / static_cast<double>(observation.points.size());
-}
-
 std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
                                        const SurfaceParameters& parameters,
+                                       const std::vector<SurfaceTerm>& terms,
                                        const SplineSurface& surface) {
-  std::map<int, const SurfaceObservation*> used;
-  for (const SurfaceObservation& observation : parameters.observations) {
-    if (observation.marker_id >= 0) used[observation.marker_id] = &observation;
+  const auto& observations = parameters.observations;
+  std::map<int, std::size_t> used;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    if (observations[k].marker_id >= 0) used[observations[k].marker_id] = k;
   }
   std::vector<SurfaceMarker> markers;
   for (const auto& [id, marker] : sorted.by_id) markers.push_back(marker);
@@ -117,8 +108,8 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
                          feet[k].beyond_edge_m, false});
     const auto observation = used.find(markers[k].marker_id);
     if (observation == used.end()) continue;
-    residuals.back().line = observation->second->line;
-    residuals.back().distance_m = DistanceOf(surface, *observation->second);
+    residuals.back().line = observations[observation->second].line;
+    residuals.back().distance_m = NormalResidual(surface, observations, terms[observation->second]);
     residuals.back().is_used = true;
   }
   return residuals;
@@ -141,20 +132,17 @@ void AddDependence(const SurfaceParameters& parameters, const std::vector<Surfac
       result->points.push_back({observations[k].marker_id, num_points == 1 ? 0 : i + 1});
     }
   }
-  const auto center = [&](std::size_t k) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const PlacedPoint& point : observations[k].points) sum += point.x_in_shape_m;
-    return Eigen::Vector3d(sum / static_cast<double>(observations[k].points.size()));
-  };
   result->smoothing_covariance_m2 = smooth.smoothing_covariance_m2;
   result->pole_by_point = Eigen::MatrixXd::Zero(smooth.pole_by_term.rows(), result->points.size());
   for (std::size_t t = 0; t < terms.size(); ++t) {
     std::size_t marker = terms[t].observation_idx;
     std::vector<double> factors = terms[t].factors;
     if (observations[marker].marker_id < 0) {
-      const Eigen::Vector3d x = center(marker);
+      const auto distance_m = [&, x = observations[marker].Center()](std::size_t k) {
+        return (observations[k].Center() - x).norm();
+      };
       marker = *std::min_element(markers.begin(), markers.end(), [&](std::size_t a, std::size_t b) {
-        return (center(a) - x).norm() < (center(b) - x).norm();
+        return distance_m(a) < distance_m(b);
       });
       const std::size_t n = observations[marker].points.size();
       factors.assign(n, 1.0 / n);
@@ -248,23 +236,21 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   SetCorners(sorted.by_id, &parameters);
   SmoothSurface smooth;
   std::vector<SurfaceTerm> terms;
-  std::optional<double> tilt_noise;
+  std::optional<std::map<int, double>> tilt_sigma_m;
   for (int fit = 1; fit <= kNumFits; ++fit) {
-    const bool is_parabolic = fit <= kNumParabolicFits && !interpolates;
+    const bool is_parabolic = fit <= kNumParabolicFits;
     terms = PlaceTerms(parameters.observations, noise);
-    if (tilt_noise) AddTiltTerms(parameters.observations, noise, *tilt_noise, &terms);
+    if (tilt_sigma_m) AddTiltTerms(parameters.observations, *tilt_sigma_m, &terms);
     smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing);
     if (fit == kNumFits) break;
-    if (!is_parabolic && !interpolates) {
-      tilt_noise = NoiseOfTilts(parameters.observations, noise, smooth);
-      // Few markers do not show that their tilts are better than their sigmas say.
-      if (noise.smoothing == Smoothing::kKnownSigma) tilt_noise = std::max(*tilt_noise, 1.0);
-    }
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
-    if (interpolates) {
-      MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
-    } else {
+    if (!interpolates) {
+      if (!is_parabolic) tilt_sigma_m = TiltSigmas(parameters.observations, noise, smooth);
       MoveMarkersToFeet(smooth.surface, open, &parameters);
+    } else if (is_parabolic) {
+      MoveCornersAroundMarkers(smooth.surface, &parameters);
+    } else {
+      MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
     }
   }
   CheckArea(sorted, ends, smooth.surface);
@@ -273,7 +259,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   result.pole_covariance_m2 = smooth.pole_covariance_m2;
   result.num_effective_parameters = smooth.num_effective_parameters;
   AddDependence(parameters, terms, smooth, &result);
-  result.residuals = Residuals(sorted, parameters, smooth.surface);
+  result.residuals = Residuals(sorted, parameters, terms, smooth.surface);
   result.notes = sorted.notes;
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
   result.edges = EdgesOf(smooth);

@@ -33,6 +33,18 @@ void MoveAlike(double u, double v, SurfaceObservation* observation) {
   observation->v = v;
 }
 
+// Moves each point to its foot.
+void MoveToFeet(const SplineSurface& surface, SurfaceObservation* observation) {
+  double sum_u = 0.0, sum_v = 0.0;
+  for (PlacedPoint& point : observation->points) {
+    MoveToFoot(surface, &point);
+    sum_u += point.u;
+    sum_v += point.v;
+  }
+  observation->u = sum_u / static_cast<double>(observation->points.size());
+  observation->v = sum_v / static_cast<double>(observation->points.size());
+}
+
 // The least and greatest u and v of the markers.
 struct Bounds {
   Eigen::Array2d least = Eigen::Array2d::Ones(), greatest = Eigen::Array2d::Zero();
@@ -62,17 +74,6 @@ OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& e
   return open;
 }
 
-void MoveToFeet(const SplineSurface& surface, SurfaceObservation* observation) {
-  double sum_u = 0.0, sum_v = 0.0;
-  for (PlacedPoint& point : observation->points) {
-    MoveToFoot(surface, &point);
-    sum_u += point.u;
-    sum_v += point.v;
-  }
-  observation->u = sum_u / static_cast<double>(observation->points.size());
-  observation->v = sum_v / static_cast<double>(observation->points.size());
-}
-
 void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
                        SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
@@ -91,17 +92,21 @@ void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
   }
 }
 
-void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters) {
+void MoveCornersAroundMarkers(const SplineSurface& surface, SurfaceParameters* parameters) {
   for (SurfaceObservation& observation : parameters->observations) {
     if (observation.marker_id < 0) continue;
     const double u = observation.u, v = observation.v;
     MoveToFeet(surface, &observation);
-    if (observation.line.empty()) {
-      MoveAlike(std::clamp(observation.u, 0.0, 1.0), std::clamp(observation.v, 0.0, 1.0),
-                &observation);
-    } else {
-      MoveAlike(u, v, &observation);
-    }
+    MoveAlike(u, v, &observation);
+  }
+}
+
+void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters) {
+  for (SurfaceObservation& observation : parameters->observations) {
+    if (observation.marker_id < 0 || !observation.line.empty()) continue;
+    PlacedPoint center{observation.Center(), observation.u, observation.v};
+    MoveToFoot(surface, &center);
+    MoveAlike(std::clamp(center.u, 0.0, 1.0), std::clamp(center.v, 0.0, 1.0), &observation);
   }
 }
 

@@ -13,17 +13,17 @@ struct OpenSides {
 };
 OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& edges);
 
-// Moves the points of an observation to their feet on the surface, also beyond its edge.
-void MoveToFeet(const SplineSurface& surface, SurfaceObservation* observation);
-
-// Moves the markers to their feet. Then rescales u and v of all observations so that the markers
-// span 0 to 1 again, except at open sides, where 0 or 1 is an edge beyond the markers and stays.
-// The chord length of a marker depends on where its line begins; its foot does not.
+// Moves the markers, by their corners, to their feet on the surface, also beyond its edge. Then
+// rescales u and v of all observations so that the markers span 0 to 1 again, except at open sides,
+// where 0 or 1 is an edge beyond the markers and stays. The chord length of a marker depends on
+// where its line begins; its foot does not.
 void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
                        SurfaceParameters* parameters);
 
-// Moves only the markers on no line of the fit, and none beyond the edge: for surfaces that
-// interpolate, whose lines keep their chord lengths. The corners of a marker move around its place.
+// For surfaces that interpolate, whose lines keep their chord lengths: the first moves the corners
+// of each marker around its place, the second the markers on no line of the fit, none beyond the
+// edge. Corners follow a smooth surface only, because they have no feet on one that swings.
+void MoveCornersAroundMarkers(const SplineSurface& surface, SurfaceParameters* parameters);
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
 }  // namespace velamap

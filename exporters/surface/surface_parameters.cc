@@ -54,6 +54,12 @@ void CheckExtension(const SurfaceOptions& options,
 
 }  // namespace
 
+Eigen::Vector3d SurfaceObservation::Center() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const PlacedPoint& point : points) sum += point.x_in_shape_m;
+  return sum / static_cast<double>(points.size());
+}
+
 SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool shows_between,
                                    const SurfaceOptions& options) {
   VELAMAP_CHECK(lines.size() >= 2);

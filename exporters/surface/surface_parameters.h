@@ -20,6 +20,8 @@ struct SurfaceObservation {
   std::string line;
   double u = 0.0, v = 0.0;          // mean of those of the points
   std::vector<PlacedPoint> points;  // the corners 1 to 4 of a marker, or one point
+
+  Eigen::Vector3d Center() const;  // mean of the points, shape frame, m
 };
 
 struct SurfaceParameters {

@@ -1,12 +1,26 @@
 #include "exporters/surface/surface_terms.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "importer/base/ids.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/least_squares.h"
 
 namespace velamap {
+
+namespace {
+
+// The noise that residuals show which a fit with so many parameters has made smaller.
+double NoiseOf(std::vector<double> residuals, double num_parameters) {
+  const auto num = static_cast<double>(residuals.size());
+  for (double& residual : residuals) residual = std::abs(residual);
+  return kMadToSigma * Median(std::move(residuals)) * std::sqrt(num / (num - num_parameters));
+}
+
+}  // namespace
 
 MarkerNoise DescribeNoise(const SortedInput& sorted) {
   std::vector<double> known;
@@ -46,40 +60,57 @@ std::vector<SurfaceTerm> PlaceTerms(const std::vector<SurfaceObservation>& obser
   return terms;
 }
 
-void AddTiltTerms(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
-                  double noise_factor, std::vector<SurfaceTerm>* terms) {
+double NormalResidual(const SplineSurface& surface,
+                      const std::vector<SurfaceObservation>& observations,
+                      const SurfaceTerm& term) {
+  const SurfaceObservation& observation = observations[term.observation_idx];
+  Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < observation.points.size(); ++i) {
+    const PlacedPoint& point = observation.points[i];
+    residual_m += term.factors[i] * (point.x_in_shape_m - EvaluatePoint(surface, point.u, point.v));
+  }
+  return EvaluateNormal(surface, observation.u, observation.v).dot(residual_m);
+}
+
+void AddTiltTerms(const std::vector<SurfaceObservation>& observations,
+                  const std::map<int, double>& tilt_sigma_m, std::vector<SurfaceTerm>* terms) {
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (observations[k].points.size() != kNumCorners) continue;
-    const double sigma_m = noise_factor * noise.tilt_sigma_m.at(observations[k].marker_id);
+    const double sigma_m = tilt_sigma_m.at(observations[k].marker_id);
     const double weight = 1.0 / (sigma_m * sigma_m);
     terms->push_back({k, {0.25, -0.25, -0.25, 0.25}, weight});
     terms->push_back({k, {0.25, 0.25, -0.25, -0.25}, weight});
   }
 }
 
-double NoiseOfTilts(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
-                    const SmoothSurface& smooth) {
+std::map<int, double> TiltSigmas(const std::vector<SurfaceObservation>& observations,
+                                 const MarkerNoise& noise, const SmoothSurface& smooth) {
+  const CauchyLoss loss{25.0};
   std::vector<SurfaceTerm> tilts;
-  AddTiltTerms(observations, noise, 1.0, &tilts);
-  double squares_of_tilts = 0.0;
+  AddTiltTerms(observations, noise.tilt_sigma_m, &tilts);
+  if (tilts.empty()) return noise.tilt_sigma_m;
+  std::vector<double> residuals;
+  std::map<int, double> squares;  // of both residuals of a marker
   for (const SurfaceTerm& term : tilts) {
-    const SurfaceObservation& marker = observations[term.observation_idx];
-    Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < marker.points.size(); ++i) {
-      const PlacedPoint& point = marker.points[i];
-      residual_m +=
-          term.factors[i] * (point.x_in_shape_m - EvaluatePoint(smooth.surface, point.u, point.v));
-    }
-    const Eigen::Vector3d normal = EvaluateNormal(smooth.surface, marker.u, marker.v);
-    squares_of_tilts += term.weight * std::pow(normal.dot(residual_m), 2);
+    residuals.push_back(std::sqrt(term.weight) *
+                        NormalResidual(smooth.surface, observations, term));
+    squares[observations[term.observation_idx].marker_id] += residuals.back() * residuals.back();
   }
   const auto n = static_cast<Eigen::Index>(observations.size());
-  const double free_tilts =
-      static_cast<double>(tilts.size()) - smooth.leverages.tail(smooth.leverages.size() - n).sum();
-  const double free_places = static_cast<double>(n) - smooth.leverages.head(n).sum();
-  const double ratio = std::sqrt(squares_of_tilts / free_tilts /
-                                 (smooth.residuals.head(n).squaredNorm() / free_places));
-  return std::isfinite(ratio) && ratio > 0 ? ratio : 1.0;
+  const Eigen::VectorXd places = smooth.residuals.head(n);
+  const double tilt_noise =
+      NoiseOf(residuals, smooth.leverages.tail(smooth.leverages.size() - n).sum());
+  const double place_noise =
+      NoiseOf({places.begin(), places.end()}, smooth.leverages.head(n).sum());
+  // A surface too stiff for exact places does not show that their tilts are better.
+  const double factor = std::max(tilt_noise / place_noise, 1.0);
+  if (!std::isfinite(factor) || tilt_noise <= 0) return noise.tilt_sigma_m;
+  std::map<int, double> sigmas_m;
+  for (const auto& [id, sigma_m] : noise.tilt_sigma_m) {
+    const double in_noise = squares[id] / (tilt_noise * tilt_noise);
+    sigmas_m[id] = factor * sigma_m / std::sqrt(loss.Weight(in_noise));
+  }
+  return sigmas_m;
 }
 
 }  // namespace velamap

@@ -25,16 +25,23 @@ MarkerNoise DescribeNoise(const SortedInput& sorted);
 std::vector<SurfaceTerm> PlaceTerms(const std::vector<SurfaceObservation>& observations,
                                     const MarkerNoise& noise);
 
-// Adds two terms per marker with corners: half the vectors between the middles of its opposite
-// sides. `noise_factor` multiplies their sigmas.
-void AddTiltTerms(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
-                  double noise_factor, std::vector<SurfaceTerm>* terms);
+// How far a term's sum of points lies from that of the surface, along the normal at its
+// observation, m; without its weight.
+double NormalResidual(const SplineSurface& surface,
+                      const std::vector<SurfaceObservation>& observations, const SurfaceTerm& term);
 
-// How much larger than their sigmas the residuals of the tilts are, compared with those of the
-// places: the root of the ratio of two variance components (Förstner, "Ein Verfahren zur Schätzung
-// von Varianz- und Kovarianzkomponenten", 1979). `smooth` fits the places and, if it has more
-// terms, the tilts. 1 where the residuals do not tell.
-double NoiseOfTilts(const std::vector<SurfaceObservation>& observations, const MarkerNoise& noise,
-                    const SmoothSurface& smooth);
+// Adds two terms per marker with corners: half the vectors between the middles of its opposite
+// sides, with these sigmas by marker id.
+void AddTiltTerms(const std::vector<SurfaceObservation>& observations,
+                  const std::map<int, double>& tilt_sigma_m, std::vector<SurfaceTerm>* terms);
+
+// The sigmas of the tilts as the residuals show them, by marker id. All are as much larger than
+// those of `noise` as the residuals of the tilts are, compared with those of the places, but never
+// smaller: the ratio of two variance components (Förstner, "Ein Verfahren zur Schätzung von
+// Varianz- und Kovarianzkomponenten", 1979), from medians. A marker that is tilted against the
+// others, such as a peeling one, gets Cauchy's weight. `smooth` fits the places and, if it has more
+// terms, the tilts.
+std::map<int, double> TiltSigmas(const std::vector<SurfaceObservation>& observations,
+                                 const MarkerNoise& noise, const SmoothSurface& smooth);
 
 }  // namespace velamap

@@ -2,13 +2,17 @@
 
 #include "exporters/surface/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
+#include "importer/base/error.h"
 #include "importer/geometry/units.h"
 #include "tests/exporters/sail/example_surface.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
@@ -52,6 +56,41 @@ TEST(Surface, TiltedMarkersShowTheShapeBetweenTheLines) {
   const double without_m = TruthRms(FitSurface(input).surface, bulging);
   EXPECT_GT(without_m, 0.008);
   EXPECT_LT(rms_m, 0.15 * without_m);
+}
+
+// Turns a marker about its vertical axis by 10 degrees, a hundred times the noise of its tilt.
+TEST(Surface, APeelingMarkerHardlyMovesIt) {
+  SurfaceInput input = CornersOn(TwistedSail, 7, 9, 0.015, 0.008);
+  AddNoise(1e-4, true, 1, &input);
+  const SplineSurface before = FitSurface(input).surface;
+  SurfaceMarker& peeling = *input.lines[3].markers[4];
+  const Eigen::AngleAxisd turn(10 * kRadPerDeg, Eigen::Vector3d::UnitZ());
+  for (Eigen::Vector3d& corner : peeling.corners_in_shape_m) {
+    corner = peeling.x_in_shape_m + turn * (corner - peeling.x_in_shape_m);
+  }
+  const SplineSurface after = FitSurface(input).surface;
+  double largest_m = 0.0;
+  for (double u = 0.05; u < 1; u += 0.1) {
+    for (double v = 0.05; v < 1; v += 0.1) {
+      const SurfaceFoot foot = ProjectOnSurface(before, {EvaluatePoint(after, u, v)}).front();
+      largest_m = std::max(largest_m, std::abs(foot.distance_m));
+    }
+  }
+  EXPECT_LT(largest_m, 1e-4);
+}
+
+// Noisy corners whose sigma is stated as zero, with markers between the lines, make a surface
+// swing. Corners that followed it would find a way to hide that.
+TEST(Surface, ExactMarkersWithNoisyCornersBearNone) {
+  for (const double noise_m : {1e-5, 1e-3}) {
+    SurfaceInput input = CornersOn(TwistedSail, 5, 12, 0.01, 0.01);
+    for (SurfaceLine& line : CornersOn(TwistedSail, 25, 3, 0.01, 0.01).lines) {
+      line.markers[1]->marker_id += 500;
+      input.markers.push_back(*line.markers[1]);
+    }
+    AddNoise(noise_m, false, 1, &input);
+    ExpectThrows<DataError>([&] { FitSurface(AsExact(input)); }, {"would oscillate"});
+  }
 }
 
 }  // namespace
