@@ -237,11 +237,14 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   SmoothSurface smooth;
   std::vector<SurfaceTerm> terms;
   std::optional<std::map<int, double>> tilt_sigma_m;
+  std::optional<SmoothingWeights> weights;  // of the last fit with all terms
   for (int fit = 1; fit <= kNumFits; ++fit) {
     const bool is_parabolic = fit <= kNumParabolicFits;
     terms = PlaceTerms(parameters.observations, noise);
     if (tilt_sigma_m) AddTiltTerms(parameters.observations, *tilt_sigma_m, &terms);
-    smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing);
+    smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing,
+                         weights);
+    if (tilt_sigma_m) weights = smooth.weights;
     if (fit == kNumFits) break;
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
     if (!interpolates) {

@@ -12,13 +12,13 @@
 namespace velamap {
 namespace {
 
-// A weight is the decimal logarithm of the ratio of the traces of penalty and data term. The
-// smallest weights interpolate to far below a micrometre and keep the equations solvable; the
+// The smallest weights interpolate to far below a micrometre and keep the equations solvable; the
 // largest leave only parabolas, which the penalties do not affect.
 constexpr double kMinWeight = -9.0, kMaxWeight = 4.0;
 // An interpolating surface may bend more along the lines, which hold markers, than between them.
 constexpr double kMinWeightAlongLines = -11.0;
-constexpr double kFirstStep = 1.0, kLastStep = 0.25;
+constexpr SmoothingWeights kStiffest{kMaxWeight, kMaxWeight};
+constexpr double kFirstStep = 1.0, kNearStep = 0.5, kLastStep = 0.25;
 // Each effective parameter counts this many times, because the smoothing with the lowest score
 // often follows the noise of few markers (Kim and Gu, "Smoothing spline Gaussian regression: more
 // scalable computation via efficient approximation", 2004).
@@ -128,17 +128,12 @@ struct Solution {
   double trace = 0.0;  // of the hat matrix
 };
 
-// Powers of ten: the weights of the two penalties.
-struct Weights {
-  double along = kMaxWeight, across = kMaxWeight;
-};
-
 struct Equations {
   Eigen::MatrixXd penalty;
   Eigen::LLT<Eigen::MatrixXd> factor;
 };
 
-Equations MakeEquations(const System& system, const Weights& weights) {
+Equations MakeEquations(const System& system, const SmoothingWeights& weights) {
   const double data_trace = system.normal.trace();
   const auto weigh = [&](double weight, const Eigen::MatrixXd& penalty) -> Eigen::MatrixXd {
     const double trace = penalty.trace();  // 0 across two lines
@@ -155,7 +150,7 @@ Equations MakeEquations(const System& system, const Weights& weights) {
   return equations;
 }
 
-Solution Solve(const System& system, const Weights& weights) {
+Solution Solve(const System& system, const SmoothingWeights& weights) {
   const auto [penalty, factor] = MakeEquations(system, weights);
   Solution solution;
   solution.poles = Eigen::MatrixX3d::Zero(penalty.rows(), 3);
@@ -184,7 +179,7 @@ Eigen::VectorXd NormalResiduals(const System& system, const Solution& solution,
 
 // Sets the covariance of the poles and its parts. `variance` is that of a term of weight 1.
 void AddUncertainty(const System& system, const std::vector<SurfaceTerm>& terms,
-                    const Weights& weights, double variance, SmoothSurface* smooth) {
+                    const SmoothingWeights& weights, double variance, SmoothSurface* smooth) {
   const auto [penalty, factor] = MakeEquations(system, weights);
   const Eigen::MatrixXd inverse =
       factor.solve(Eigen::MatrixXd::Identity(penalty.rows(), penalty.rows()));
@@ -200,16 +195,17 @@ void AddUncertainty(const System& system, const std::vector<SurfaceTerm>& terms,
 struct Choice {
   Solution solution;
   double score = std::numeric_limits<double>::infinity();
-  Weights weights;
+  SmoothingWeights weights = kStiffest;
 };
 
-// The weights with the lowest score, by a pattern search (Hooke and Jeeves, 1961) from the best
-// pair of equal weights.
+// The weights with the lowest score, by a pattern search (Hooke and Jeeves, 1961) from `near` or
+// from the best pair of equal weights.
 template <typename Score>
-Choice Search(const System& system, const Score& score_of) {
+Choice Search(const System& system, const std::optional<SmoothingWeights>& near,
+              const Score& score_of) {
   Choice best;
   best.solution = Solve(system, best.weights);  // stays where too few observations have a score
-  const auto improves = [&](const Weights& weights) {
+  const auto improves = [&](const SmoothingWeights& weights) {
     if (std::min(weights.along, weights.across) < kMinWeight) return false;
     if (std::max(weights.along, weights.across) > kMaxWeight) return false;
     Solution solution = Solve(system, weights);
@@ -218,13 +214,14 @@ Choice Search(const System& system, const Score& score_of) {
     best = {std::move(solution), score, weights};
     return true;
   };
-  for (double weight = kMaxWeight; weight >= kMinWeight; weight -= kFirstStep) {
+  if (near) improves(*near);
+  for (double weight = kMaxWeight; !near && weight >= kMinWeight; weight -= kFirstStep) {
     improves({weight, weight});
   }
-  for (double step = kFirstStep; step >= kLastStep; step /= 2) {
+  for (double step = near ? kNearStep : kFirstStep; step >= kLastStep; step /= 2) {
     bool moved = true;
     while (moved) {
-      const Weights center = best.weights;
+      const SmoothingWeights center = best.weights;
       moved = improves({center.along + step, center.across}) ||
               improves({center.along - step, center.across}) ||
               improves({center.along, center.across + step}) ||
@@ -237,7 +234,8 @@ Choice Search(const System& system, const Score& score_of) {
 }  // namespace
 
 SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
-                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing) {
+                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing,
+                          const std::optional<SmoothingWeights>& near) {
   const std::size_t n = terms.size();
   const System system = MakeSystem(parameters, terms);
   SmoothSurface smooth;
@@ -247,7 +245,7 @@ SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
     smooth.num_effective_parameters = closest.trace;
     return smooth;
   }
-  const Solution parabolic = Solve(system, {kMaxWeight, kMaxWeight});
+  const Solution parabolic = Solve(system, kStiffest);
   smooth.surface = MakeSurface(parameters, parabolic);
   smooth.num_effective_parameters = parabolic.trace;
   if (smoothing == Smoothing::kParabolas) return smooth;
@@ -259,7 +257,7 @@ SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
   const auto squares_of = [&](const Solution& solution) {
     return NormalResiduals(system, solution, normals).squaredNorm();
   };
-  const Choice chosen = Search(system, [&](const Solution& solution) {
+  const Choice chosen = Search(system, near, [&](const Solution& solution) {
     if (smoothing == Smoothing::kKnownSigma) {
       return squares_of(solution) + 2 * kCostFactor * solution.trace;
     }
@@ -273,6 +271,7 @@ SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
                               ? 1.0
                               : smooth.residuals.squaredNorm() / std::max(free, 1.0);
   smooth.surface = MakeSurface(parameters, chosen.solution);
+  smooth.weights = chosen.weights;
   smooth.num_effective_parameters = chosen.solution.trace;
   AddUncertainty(system, terms, chosen.weights, variance, &smooth);
   return smooth;

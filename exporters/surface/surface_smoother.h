@@ -31,8 +31,15 @@ struct SurfaceTerm {
   double weight = 1.0;          // positive; 1 / sigma^2
 };
 
+// Of the penalties on bends along the lines and across them: the decimal logarithms of the ratios
+// of the traces of penalty and data term.
+struct SmoothingWeights {
+  double along = 0.0, across = 0.0;
+};
+
 struct SmoothSurface {
   SplineSurface surface;
+  SmoothingWeights weights;
   double num_effective_parameters = 0.0;
   // By term: the residual along the normal times the root of the weight, and how far the surface
   // follows the term (the diagonal of the hat matrix). Empty for parabolas and if interpolating.
@@ -53,8 +60,10 @@ Eigen::RowVectorXd PoleShares(const SplineSurface& surface, double u, double v);
 std::optional<double> SigmaAt(const SplineSurface& surface,
                               const Eigen::MatrixXd& pole_covariance_m2, double u, double v);
 
-// Throws DataError if the equations have no solution in double precision.
+// Looks for the weights around `near`, such as those of nearly the same terms, without it
+// everywhere. Throws DataError if the equations have no solution in double precision.
 SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
-                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing);
+                          const std::vector<SurfaceTerm>& terms, Smoothing smoothing,
+                          const std::optional<SmoothingWeights>& near = std::nullopt);
 
 }  // namespace velamap
