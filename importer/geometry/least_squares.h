@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace velamap {
@@ -97,15 +96,18 @@ struct LeastSquaresProblem {
   void Predict(const Step&, Equations*) const {}
 };
 
+// Replaces the right side `solution` by the solution, and `matrix` by its factor. Returns whether
+// the matrix is positive definite and the solution finite. One function for all numbers of
+// parameters, because Eigen's solvers of fixed sizes take long to compile.
+bool SolveInPlace(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Ref<Eigen::VectorXd> solution);
+
 // The step that solves the damped equations; nothing for a singular system.
 template <typename Equations>
 std::optional<typename Equations::Vector> SolveDamped(const Equations& equations, double damping) {
   typename Equations::Matrix damped = equations.hessian();
   damped.diagonal() *= 1 + damping;
-  const Eigen::LLT<Eigen::Ref<typename Equations::Matrix>> factors(damped);
-  if (factors.info() != Eigen::Success) return std::nullopt;
-  const typename Equations::Vector step = -factors.solve(equations.gradient());
-  if (!step.allFinite()) return std::nullopt;
+  typename Equations::Vector step = -equations.gradient();
+  if (!SolveInPlace(damped, step)) return std::nullopt;
   return step;
 }
 
