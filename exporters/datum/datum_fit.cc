@@ -170,8 +170,8 @@ std::string UndeterminedMotions(const DatumPoints& points, const PointSet& set,
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
-                                               const Rigid3& known_from_centred) {
+std::optional<UncertainValue> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
+                                                  const Rigid3& known_from_centred) {
   constexpr double kMaxSigma = 0.5;
   const DatumEquations equations = Linearize(points, set, known_from_centred);
   const SetSystem system =
@@ -179,8 +179,8 @@ std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const 
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
   const double weight = by_scale.dot(system.WithoutPose(by_scale));
   if (!(weight * kMaxSigma * kMaxSigma > 1)) return std::nullopt;
-  return ScaleChange{-by_scale.dot(system.WithoutPose(system.residuals)) / weight,
-                     1.0 / std::sqrt(weight)};
+  return UncertainValue{-by_scale.dot(system.WithoutPose(system.residuals)) / weight,
+                        1.0 / std::sqrt(weight)};
 }
 
 }  // namespace velamap

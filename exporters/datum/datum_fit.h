@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exporters/datum/datum_equations.h"
+#include "importer/base/statistics.h"
 
 namespace velamap {
 
@@ -26,14 +27,9 @@ std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& 
 std::string UndeterminedMotions(const DatumPoints& points, const PointSet& set,
                                 const Rigid3& known_from_centred);
 
-// The relative change of the size of the shape that would fit the set best.
-struct ScaleChange {
-  double value = 0.0;
-  double sigma = 0.0;
-};
-
-// Returns nothing if the set does not determine the size (a sigma of 0.5 or more).
-std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
-                                               const Rigid3& known_from_centred);
+// The relative change of the size of the shape that would fit the set best; nothing if the set does
+// not determine the size (a sigma of 0.5 or more).
+std::optional<UncertainValue> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
+                                                  const Rigid3& known_from_centred);
 
 }  // namespace velamap

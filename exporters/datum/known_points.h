@@ -40,7 +40,7 @@ struct KnownPointFit {
   // The square root of the sum of squared whitened residuals divided by the redundancy. It is about
   // 1 if the sigmas are right. Not set without redundancy.
   std::optional<double> residual_in_sigmas;
-  std::optional<ScaleChange> scale_change;  // not set if the points do not determine it
+  std::optional<UncertainValue> scale_change;  // not set if the points do not determine it
 
   // Whether the points contradict the size of the shape by more than three sigmas.
   bool ContradictsScale() const;

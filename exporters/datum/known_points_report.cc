@@ -86,7 +86,7 @@ const ComparedPoint* WorstPoint(const KnownPointFit& fit) {
   return is_checked ? worst : nullptr;
 }
 
-std::string ScaleChangeText(const ScaleChange& change) {
+std::string ScaleChangeText(const UncertainValue& change) {
   return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * change.value, 100.0 * change.sigma);
 }
 

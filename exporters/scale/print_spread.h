@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "importer/base/statistics.h"
+
 namespace velamap {
 
 struct SpreadSample {
@@ -16,12 +18,6 @@ struct SpreadSample {
   double sigma = 0.0;           // of log_side_ratio; 0 if unknown
   double length_m = 0.0;        // printed side
   std::optional<double> side_px;
-};
-
-// A value and its 1 sigma.
-struct UncertainValue {
-  double value = 0.0;
-  double sigma = 0.0;
 };
 
 // Spreads count outwards from each edge, so a side grows by twice the spread; insets are negative.

@@ -18,6 +18,12 @@ struct Statistics {
   double MaxAbs() const;  // the largest absolute value
 };
 
+// A value and its 1 sigma.
+struct UncertainValue {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+
 // All zero for no values.
 Statistics ComputeStatistics(std::vector<double> values);
 

@@ -157,7 +157,7 @@ TEST_F(KnownPoints, TheSizeThatTheyAskForIsReportedWithItsSigma) {
     for (ShapeMarker& marker : shape_.markers) {
       for (auto& x : marker.x_in_shape_m) *x *= 1.002;
     }
-    const ScaleChange change = Fit().scale_change.value();
+    const UncertainValue change = Fit().scale_change.value();
     in_sigmas.push_back((change.value + 0.002) / change.sigma);
   }
   const Statistics statistics = ComputeStatistics(in_sigmas);

@@ -99,7 +99,7 @@ TEST_F(ReportKeyNumbers, AKnownPointThatFailsIsRed) {
   EXPECT_EQ(status(), ReportStatus::kNone);  // no redundancy
   fit.residual_in_sigmas = 1.1;
   EXPECT_EQ(status(), ReportStatus::kGood);
-  fit.scale_change = ScaleChange{0.01, 0.004};
+  fit.scale_change = UncertainValue{0.01, 0.004};
   EXPECT_EQ(status(), ReportStatus::kGood);
   fit.scale_change->sigma = 0.003;
   EXPECT_EQ(status(), ReportStatus::kCheck);
