@@ -155,8 +155,7 @@ bool DropContradictions(const Layout& layout, GlobalRegistration* global) {
 }
 
 void LeaveOutBlurredFrames(GlobalRegistration* global) {
-  constexpr double kMinFactor = 0.3;  // no frame is blurred with noise far below the nominal one
-  const double general_factor = std::max(global->noise.factor, kMinFactor);
+  const double general_factor = std::max(global->noise.factor, kMinNoiseFactor);
   for (std::size_t idx = 0; idx < global->problem.frames.size(); ++idx) {
     const double factor = global->noise.factor_of_frame[idx];
     if (!global->solution.cam_from_shape[idx] || factor < kBlurRatio * general_factor ||

@@ -15,9 +15,6 @@
 namespace velamap {
 namespace {
 
-// The nominal sigma is a guess; the noise of corners is at least this fraction of it.
-constexpr double kMinFactor = 0.3;
-
 // Converts a median RMS error of four corners to 1 sigma of a coordinate.
 double SigmaFromMedian(double median_rms, double median_of_chi_square) {
   return median_rms * std::sqrt(kNumCorners / median_of_chi_square);
@@ -81,7 +78,7 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
                    int marker_idx) {
   const MapMarker& marker = problem.Marker(marker_idx);
   const Sim3& place = solution.Places(marker_idx).front();
-  const double factor = std::max(noise.factor, kMinFactor);
+  const double factor = std::max(noise.factor, kMinNoiseFactor);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d with_side = Eigen::Vector3d::Zero();
   double of_side = 1 / (kScaleSigma * kScaleSigma);
@@ -142,7 +139,7 @@ double FinalTolerance(const MapObservation& observation, const MapNoise& noise) 
   constexpr double kSigmas = 5.0;
   const double factor = std::max(
       {noise.factor, noise.factor_of_frame[static_cast<std::size_t>(observation.frame_idx)],
-       kMinFactor});
+       kMinNoiseFactor});
   return kSigmas * factor * observation.sigma_px;
 }
 

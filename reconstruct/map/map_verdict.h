@@ -10,6 +10,9 @@
 
 namespace velamap {
 
+// The nominal sigma is a guess; the noise of corners is at least this fraction of it.
+inline constexpr double kMinNoiseFactor = 0.3;
+
 struct MapNoise {
   // Robust standard deviation of a coordinate of a corner in units of its sigma_px: in the map, and
   // in single frames (0: not registered).

@@ -16,10 +16,10 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::vector<std::string> kCommands = {
-    "automatic_reconstructor", "marker_generator", "marker_importer",
-    "frame_registrator",       "bundle_adjuster",  "shape_exporter",
-    "central_frame_sweeper",   "shape_analyzer",   "shape_comparer",
-    "database_merger",         "version"};
+    "marker_generator",        "shoot_planner",   "camera_calibrator", "clip_checker",
+    "automatic_reconstructor", "marker_importer", "database_merger",   "frame_registrator",
+    "bundle_adjuster",         "shape_exporter",  "shape_analyzer",    "shape_comparer",
+    "central_frame_sweeper",   "version"};
 
 TEST(CommandLineTest, HelpListsAllCommands) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
