@@ -20,13 +20,17 @@ namespace {
 
 constexpr int kMaxDepth = 16, kMaxValues = 2'000'000;
 
-[[noreturn]] void FailForm(const std::string& path, const std::string& why) {
-  throw InputError(
-      fmt::format("{}: not a readable OpenCV FileStorage file: {}", path, SingleLine(why)));
+// What messages call a file.
+struct NamedFile {
+  std::string path, kind;
+};
+
+[[noreturn]] void FailForm(const NamedFile& file, const std::string& why) {
+  throw InputError(fmt::format("{}: not a readable {}: {}", file.path, file.kind, SingleLine(why)));
 }
 
-[[noreturn]] void FailDepth(const std::string& path) {
-  FailForm(path, fmt::format("nested more than {} deep", kMaxDepth));
+[[noreturn]] void FailDepth(const NamedFile& file) {
+  FailForm(file, fmt::format("nested more than {} deep", kMaxDepth));
 }
 
 // Whether OpenCV reads the scalar as a number; else it is a text.
@@ -52,7 +56,7 @@ std::string Quoted(const std::string& text) {
 // Visits each value as often as aliases repeat it.
 class YamlWriter {
  public:
-  explicit YamlWriter(const std::string& path) : path_(path) {}
+  explicit YamlWriter(const NamedFile& file) : file_(file) {}
 
   std::string Write(const YAML::Node& map) {
     text_ = "%YAML:1.0\n---\n";
@@ -62,9 +66,9 @@ class YamlWriter {
 
  private:
   void Count(int depth) {
-    if (depth > kMaxDepth) FailDepth(path_);
+    if (depth > kMaxDepth) FailDepth(file_);
     if (++num_values_ > kMaxValues) {
-      FailForm(path_, fmt::format("it holds more than {} values, aliases resolved", kMaxValues));
+      FailForm(file_, fmt::format("it holds more than {} values, aliases resolved", kMaxValues));
     }
   }
 
@@ -114,42 +118,43 @@ class YamlWriter {
     text_ += " ]";
   }
 
-  std::string path_, text_;
+  const NamedFile& file_;
+  std::string text_;
   int num_values_ = 0;
 };
 
 // JSON, too: it is YAML, and OpenCV writes numbers such as 300. that only YAML allows. One document
 // is read, because yaml-cpp does not end on some texts of several.
-std::string RewrittenYaml(const std::string& text, const std::string& path) {
+std::string RewrittenYaml(const std::string& text, const NamedFile& file) {
   const std::size_t begin = text.find("\n---"), end = text.find("\n...");
   const bool begins_twice =
       begin != std::string::npos && text.find("\n---", begin + 1) != std::string::npos;
   if (begins_twice ||
       (end != std::string::npos && text.find_first_not_of(" \t\r\n.", end) != std::string::npos)) {
-    FailForm(path, "it holds more than one document");
+    FailForm(file, "it holds more than one document");
   }
   YAML::Node document;
   try {
     document = YAML::Load(text);
   } catch (const YAML::Exception& exception) {  // beyond a depth of 500, too
-    FailForm(path, exception.what());
+    FailForm(file, exception.what());
   }
-  if (!document.IsMap()) FailForm(path, "its top level is not a map of keys");
-  return YamlWriter(path).Write(document);
+  if (!document.IsMap()) FailForm(file, "its top level is not a map of keys");
+  return YamlWriter(file).Write(document);
 }
 
-std::string RewrittenXml(const std::string& text, const std::string& path) {
+std::string RewrittenXml(const std::string& text, const NamedFile& file) {
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
-  if (!result) FailForm(path, result.description());
+  if (!result) FailForm(file, result.description());
   if (std::strcmp(document.document_element().name(), "opencv_storage") != 0) {
-    FailForm(path, "its first element is not opencv_storage");
+    FailForm(file, "its first element is not opencv_storage");
   }
   std::vector<std::pair<pugi::xml_node, int>> nodes = {{document.document_element(), 0}};
   while (!nodes.empty()) {
     const auto [node, depth] = nodes.back();
     nodes.pop_back();
-    if (depth > kMaxDepth) FailDepth(path);
+    if (depth > kMaxDepth) FailDepth(file);
     for (const pugi::xml_node child : node) nodes.emplace_back(child, depth + 1);
   }
   std::ostringstream rewritten;
@@ -157,18 +162,18 @@ std::string RewrittenXml(const std::string& text, const std::string& path) {
   return rewritten.str();
 }
 
-std::string Rewritten(const std::string& text, const std::string& path) {
-  if (text.find('\0') != std::string::npos) FailForm(path, "it holds a zero byte");
+std::string Rewritten(const std::string& text, const NamedFile& file) {
+  if (text.find('\0') != std::string::npos) FailForm(file, "it holds a zero byte");
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_xml = begin != std::string::npos && text[begin] == '<';
-  return is_xml ? RewrittenXml(text, path) : RewrittenYaml(text, path);
+  return is_xml ? RewrittenXml(text, file) : RewrittenYaml(text, file);
 }
 
 }  // namespace
 
 cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
                             const std::string& kind) {
-  const std::string rewritten = Rewritten(text, path);
+  const std::string rewritten = Rewritten(text, {path, kind});
   try {
     cv::FileStorage storage(rewritten, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (storage.isOpened()) {

@@ -69,7 +69,7 @@ std::vector<BadInput> Walls() {
                      "bad.yml: not a readable OpenCV FileStorage file", Write("bad.yml", text)});
     cases.push_back({"Dictionary" + name,
                      MainJob("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1"), 2,
-                     "bad.yml: not a readable OpenCV FileStorage file", Write("bad.yml", text)});
+                     "bad.yml: not a readable cv::aruco dictionary file", Write("bad.yml", text)});
   }
   const std::vector<std::pair<std::string, std::string>> calls = {
       {"Calibration", MainJob("grey", "bad.yml")},
