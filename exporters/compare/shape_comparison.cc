@@ -124,18 +124,16 @@ double ScaleOf(const Alignment& alignment, const MarkerShape& shape, const Marke
   return CompareShapes(Keep(shape, counts), Keep(reference, counts)).scale;
 }
 
-// How far a marker may lie beyond the edge, m: as far as the option says, or as three sigmas of its
-// position across the edge.
+// How far a marker may lie beyond the edge, m.
 double ReachOf(const MeshFoot& foot, const Eigen::Vector3d& x_m,
                const std::optional<Eigen::Matrix3d>& covariance_m2, const EdgeOptions& edge) {
-  constexpr double kNumSigmas = 3.0;
   double reach_m = kMPerMm * edge.tolerance_mm;
   const Eigen::Vector3d from_foot = x_m - foot.x_m;
   const Eigen::Vector3d across = from_foot - from_foot.dot(foot.normal) * foot.normal;
   if (covariance_m2 && across.norm() > 0) {
     const Eigen::Vector3d direction = across.normalized();
     const double variance_m2 = direction.dot(*covariance_m2 * direction);
-    reach_m = std::max(reach_m, kNumSigmas * std::sqrt(std::max(0.0, variance_m2)));
+    reach_m = std::max(reach_m, edge.num_sigmas * std::sqrt(std::max(0.0, variance_m2)));
   }
   return reach_m;
 }

@@ -23,6 +23,7 @@ namespace velamap {
 // the bend as well (marker_distance.h).
 struct EdgeOptions {
   double tolerance_mm = 20.0;
+  double num_sigmas = 3.0;  // of the marker's position across the border, if that is farther
 
   void Check() const;  // throws InputError that names the option
 };
