@@ -107,7 +107,8 @@ TEST(LoadDictionary, FileErrorsNameTheKey) {
   expect(head + "marker_1: \"011001100\"\n", "marker_1", "the same as marker_0 turned by 90");
   const std::string path = dir / "no.yml";
   std::ofstream(path) << "this is no dictionary";
-  ExpectThrows<InputError>([&] { LoadDictionary(path); }, {path, "not a readable cv::aruco dictionary file"});
+  ExpectThrows<InputError>([&] { LoadDictionary(path); },
+                           {path, "not a readable cv::aruco dictionary file"});
 }
 
 TEST(LoadDictionary, ErrorCorrectionNeverConfusesMarkers) {
