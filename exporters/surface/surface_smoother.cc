@@ -199,24 +199,30 @@ struct Choice {
 };
 
 // The weights with the lowest score, by a pattern search (Hooke and Jeeves, 1961) from `near` or
-// from the best pair of equal weights.
+// from the best pair of equal weights. `parabolic` is the solution of the stiffest ones.
 template <typename Score>
-Choice Search(const System& system, const std::optional<SmoothingWeights>& near,
-              const Score& score_of) {
+Choice Search(const System& system, const Solution& parabolic,
+              const std::optional<SmoothingWeights>& near, const Score& score_of) {
   Choice best;
-  best.solution = Solve(system, best.weights);  // stays where too few observations have a score
-  const auto improves = [&](const SmoothingWeights& weights) {
-    if (std::min(weights.along, weights.across) < kMinWeight) return false;
-    if (std::max(weights.along, weights.across) > kMaxWeight) return false;
-    Solution solution = Solve(system, weights);
+  best.solution = parabolic;  // stays where too few observations have a score
+  const auto is_better = [&](const SmoothingWeights& weights, Solution solution) {
     const double score = score_of(solution);
     if (!(score < best.score)) return false;
     best = {std::move(solution), score, weights};
     return true;
   };
-  if (near) improves(*near);
-  for (double weight = kMaxWeight; !near && weight >= kMinWeight; weight -= kFirstStep) {
-    improves({weight, weight});
+  const auto improves = [&](const SmoothingWeights& weights) {
+    return std::min(weights.along, weights.across) >= kMinWeight &&
+           std::max(weights.along, weights.across) <= kMaxWeight &&
+           is_better(weights, Solve(system, weights));
+  };
+  if (near) {
+    improves(*near);
+  } else {
+    is_better(kStiffest, parabolic);
+    for (double weight = kMaxWeight - kFirstStep; weight >= kMinWeight; weight -= kFirstStep) {
+      improves({weight, weight});
+    }
   }
   for (double step = near ? kNearStep : kFirstStep; step >= kLastStep; step /= 2) {
     bool moved = true;
@@ -257,7 +263,7 @@ SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
   const auto squares_of = [&](const Solution& solution) {
     return NormalResiduals(system, solution, normals).squaredNorm();
   };
-  const Choice chosen = Search(system, near, [&](const Solution& solution) {
+  const Choice chosen = Search(system, parabolic, near, [&](const Solution& solution) {
     if (smoothing == Smoothing::kKnownSigma) {
       return squares_of(solution) + 2 * kCostFactor * solution.trace;
     }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -15,53 +14,15 @@
 
 #include "exporters/comparison_page/comparison_words.h"
 #include "tests/exporters/compare/example_comparison.h"
-#include "tests/support/temp_dir.h"
+#include "tests/exporters/comparison_page/page_example.h"
 
 namespace velamap {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
-
-ComparisonOptions WithDeflections() {
-  ComparisonOptions options;
-  options.with_deflections = true;
-  return options;
-}
-
-// The depth of the line h3 grows by a tenth.
-MarkerShape Fuller() {
-  MarkerShape shape = BoatShape(0.001);
-  const MarkerShape boat = shape;
-  for (const int id : {32, 33, 34, 35}) {
-    const double u = 0.2 * (id - 31);
-    shape = Shifted({id}, -0.12 * u * (1 - u) * MarkerNormal(*FindWholeMarker(boat, id)), shape);
-  }
-  return shape;
-}
-
-// Holds what the input refers to.
-struct PageExample {
-  std::vector<Comparison> series;
-  MarkerShape reference = BoatShape(0.001);
-  Layout layout = BoatLayout();
-  bool is_design = false;
-
-  void Add(const std::string& name, const MarkerShape& shape) {
-    series.push_back(
-        Compare(name, WithSigmas(shape), WithSigmas(reference), layout, WithDeflections()));
-  }
-  ComparisonPageInput Input() const {
-    ComparisonPageInput input{series, is_design ? nullptr : &reference, layout};
-    input.reference_name = is_design ? "design.step" : "trim1";
-    input.version = "0.0";
-    return input;
-  }
-  Json Data() const { return Json::parse(ComparisonJson(Input())); }
-};
 
 TEST(ComparisonPage, AShapeAgainstItselfIsTheSame) {
   PageExample example;
@@ -354,45 +315,6 @@ TEST(ComparisonPage, IsOneFileWithoutScriptsFromNames) {
   std::ostringstream again;
   WriteComparisonPage(input, again);
   EXPECT_EQ(again.str(), page);
-}
-
-TEST(ComparisonFiles, APartKeepsItsNumberWhereAnotherHasNoSurface) {
-  PageExample example;
-  example.layout = WithJib(BoatLayout());
-  example.reference = WithJib(BoatShape(0.001));
-  example.Add("both", example.reference);
-  example.Add("jib", Without(IdsOf("sail"), example.reference));
-  const TempDir dir;
-  WriteComparisonFiles(example.Input(), dir.path());
-  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_both.vts"));
-  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_both_part2.vts"));
-  EXPECT_FALSE(std::filesystem::exists(dir / "deflection_jib.vts"));
-  EXPECT_TRUE(std::filesystem::exists(dir / "deflection_jib_part2.vts"));
-}
-
-TEST(ComparisonSeries, FiguresNameTheirShape) {
-  PageExample example;
-  example.Add("trim2", Fuller());
-  const MetricsReport one = MakeComparisonReport(example.series);
-  EXPECT_EQ(one.metrics.front().key, "alignment");
-  example.Add("trim3", BoatShape(0.001));
-  const MetricsReport two = MakeComparisonReport(example.series);
-  EXPECT_TRUE(two.metrics.empty());
-  EXPECT_EQ(two.tables.front().name, "shapes");
-  EXPECT_EQ(two.tables.size(), one.tables.size() + 1);
-  for (const MetricTable& table : two.tables) {
-    for (const Metrics& row : table.rows) EXPECT_EQ(row.front().key, "shape") << table.name;
-  }
-  std::ostringstream text;
-  PrintMetrics(two, text);
-  EXPECT_THAT(text.str(), HasSubstr("shapes: shape trim2, alignment reference_part"));
-  EXPECT_THAT(text.str(), HasSubstr("section_differences: shape trim3, part sail, section h1"));
-}
-
-TEST(ComparisonSeries, ShapesAreNamedByTheirFolders) {
-  EXPECT_THAT(NamesOfShapes({"/a/trim1/shape", "/a/trim2/shape/", "/a/trim3/shape/shape.csv",
-                             "/a/truth.csv", "/b/trim1/shape", "/b/trim1"}),
-              ElementsAre("trim1", "trim2", "trim3", "truth.csv", "trim1 (2)", "trim1 (3)"));
 }
 
 }  // namespace
