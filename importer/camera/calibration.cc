@@ -216,6 +216,14 @@ void CheckRangeOfParams(const Camera& camera, const std::string& path) {
   }
 }
 
+// Whether a picture of this size is one of the camera's, smaller or larger, up to rounding.
+bool IsPureScale(const Camera& camera, int width_px, int height_px) {
+  const double scale_x = static_cast<double>(width_px) / camera.width_px;
+  const double scale_y = static_cast<double>(height_px) / camera.height_px;
+  return std::abs(camera.height_px * scale_x - height_px) <= 0.5 ||
+         std::abs(camera.width_px * scale_y - width_px) <= 0.5;
+}
+
 }  // namespace
 
 Camera ReadCalibration(const std::string& path) {
@@ -235,10 +243,8 @@ Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
   if (camera.width_px == width_px && camera.height_px == height_px) return camera;
   const double scale_x = static_cast<double>(width_px) / camera.width_px;
   const double scale_y = static_cast<double>(height_px) / camera.height_px;
-  const bool pure_scale = std::abs(camera.height_px * scale_x - height_px) <= 0.5 ||
-                          std::abs(camera.width_px * scale_y - width_px) <= 0.5;
-  if (!pure_scale) {
-    const bool turned = (width_px < height_px) != (camera.width_px < camera.height_px);
+  if (!IsPureScale(camera, width_px, height_px)) {
+    const bool turned = IsPureScale(camera, height_px, width_px);
     Fail(calibration_path,
          fmt::format("the calibration is for {}x{} px, but the frames have {}x{}: {}; calibrate "
                      "with frames of the same kind",

@@ -141,6 +141,8 @@ TEST(ScaleToImageSize, AcceptsRoundedAndRefusesOtherSizes) {
                            {"c.yml", "1920x1080", "640x480", "the aspect ratio differs"});
   ExpectThrows<InputError>([&] { ScaleToImageSize(camera, 1080, 1920, "c.yml"); },
                            {"c.yml", "turned by 90 degrees"});
+  ExpectThrows<InputError>([&] { ScaleToImageSize(camera, 300, 1080, "c.yml"); },
+                           {"c.yml", "1920x1080", "300x1080", "the aspect ratio differs"});
 }
 
 }  // namespace
