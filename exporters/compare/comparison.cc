@@ -44,25 +44,17 @@ std::string NameOfShape(const std::string& path) {
   return folder.has_filename() ? folder.filename().string() : file;
 }
 
-const MarkerShape& PlacesOf(const UncertainShape& reference) { return reference.shape; }
-const MeshDistance& PlacesOf(const MeshDistance& reference) { return reference; }
+bool HasDeflections(const Layout& layout, const ComparisonOptions& options) {
+  return options.with_deflections && FirstPartWithLines(layout) != nullptr;
+}
 
-// All but the sections. `covariance` is of the shape; `reference` is a shape or a design.
-template <typename Reference>
-Comparison CompareAligned(const std::string& name, ShapeDeviation deviation,
-                          const PointCovariance& covariance, const Reference& reference,
-                          const Layout& layout, const ComparisonOptions& options) {
+// The markers only.
+Comparison WithoutSurfaces(const std::string& name, ShapeDeviation deviation,
+                           const Layout& layout) {
   Comparison comparison;
   comparison.name = name;
   comparison.deviation = std::move(deviation);
   comparison.has_layout = layout.HasMarkers();
-  if (!comparison.has_layout) return comparison;
-  comparison.surfaces = CompareSurfaces(comparison.deviation.aligned_shape, PlacesOf(reference),
-                                        layout, options.part, options.edge);
-  if (options.with_deflections && FirstPartWithLines(layout) != nullptr) {
-    comparison.deflections = ComputeDeflections(comparison.deviation, covariance, reference, layout,
-                                                options.grid, options.part, options.edge);
-  }
   return comparison;
 }
 
@@ -71,28 +63,38 @@ Comparison CompareAligned(const std::string& name, ShapeDeviation deviation,
 Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const UncertainShape& reference, const Layout& layout,
                    const ComparisonOptions& options) {
-  ShapeDeviation deviation =
-      CompareWithShape(shape, reference, layout, options.alignment, options.part);
-  Comparison comparison =
-      CompareAligned(name, std::move(deviation), shape.covariance, reference, layout, options);
-  if (comparison.has_layout) {
-    comparison.sections =
-        CompareSections(shape, reference, comparison.deviation.alignment, layout, options.part);
+  Comparison comparison = WithoutSurfaces(
+      name, CompareWithShape(shape, reference, layout, options.alignment, options.part), layout);
+  if (!comparison.has_layout) return comparison;
+  const Alignment& alignment = comparison.deviation.alignment;
+  const ShapeSurfaces of_shape(comparison.deviation.aligned_shape), of_reference(reference.shape);
+  comparison.surfaces = CompareSurfaces(of_shape, of_reference, layout, options.part, options.edge);
+  if (HasDeflections(layout, options)) {
+    comparison.deflections = ComputeDeflections(alignment, {of_shape, shape.covariance},
+                                                {of_reference, reference.covariance}, layout,
+                                                options.grid, options.part);
   }
+  comparison.sections = CompareSections(shape, reference, alignment, layout, options.part);
   return comparison;
 }
 
 Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const MeshDistance& reference, const Layout& layout,
                    const ComparisonOptions& options) {
-  ShapeDeviation deviation = CompareWithMesh(shape, reference, layout, options.alignment,
-                                             options.part, options.edge, options.surface_sigma_m);
   Comparison comparison =
-      CompareAligned(name, std::move(deviation), shape.covariance, reference, layout, options);
-  if (comparison.has_layout) {
-    comparison.sections =
-        CompareSectionsOfDesign(shape, comparison.deviation, layout, options.part);
+      WithoutSurfaces(name,
+                      CompareWithMesh(shape, reference, layout, options.alignment, options.part,
+                                      options.edge, options.surface_sigma_m),
+                      layout);
+  if (!comparison.has_layout) return comparison;
+  const ShapeSurfaces of_shape(comparison.deviation.aligned_shape);
+  comparison.surfaces = CompareSurfaces(of_shape, reference, layout, options.part, options.edge);
+  if (HasDeflections(layout, options)) {
+    comparison.deflections =
+        ComputeDeflections(comparison.deviation, {of_shape, shape.covariance}, reference, layout,
+                           options.grid, options.part, options.edge);
   }
+  comparison.sections = CompareSectionsOfDesign(shape, comparison.deviation, layout, options.part);
   return comparison;
 }
 

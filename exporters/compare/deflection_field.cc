@@ -1,6 +1,5 @@
 #include "exporters/compare/deflection_field.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,35 +13,25 @@
 namespace velamap {
 namespace {
 
-// Only the whole markers that both shapes have, so that both surfaces have the same parameters.
-MarkerShape CommonMarkers(const MarkerShape& shape, const MarkerShape& other) {
-  MarkerShape common;
-  std::copy_if(shape.markers.begin(), shape.markers.end(), std::back_inserter(common.markers),
-               [&](const ShapeMarker& marker) {
-                 return marker.IsWhole() && FindWholeMarker(other, marker.marker_id) != nullptr;
-               });
-  return common;
-}
-
 std::optional<double> Sigma(const std::optional<double>& variance_m2,
                             const std::optional<double>& other_variance_m2) {
   if (!variance_m2 || !other_variance_m2) return std::nullopt;
   return std::sqrt(*variance_m2 + *other_variance_m2);
 }
 
-DeflectionField FieldBetween(const ShapeDeviation& deviation, const PointCovariance& covariance,
-                             const UncertainShape& reference, const LayoutPart& part,
+DeflectionField FieldBetween(const Alignment& alignment, const UncertainSurfaces& shape,
+                             const UncertainSurfaces& reference, const LayoutPart& part,
                              const GridOptions& options) {
-  const MarkerShape common = CommonMarkers(deviation.aligned_shape, reference.shape),
-                    common_of_reference = CommonMarkers(reference.shape, deviation.aligned_shape);
-  const FittedSurface of_shape = FitSurface(CollectSurfaceInput(common, part));
-  const FittedSurface of_reference = FitSurface(CollectSurfaceInput(common_of_reference, part));
-  const AlignmentSensitivity sensitivity(deviation.alignment);
-  const SurfaceNoise noise(of_shape, ComparedShape::kShape, sensitivity, covariance),
+  const MarkerShape& markers = shape.surfaces.shape();
+  const MarkerShape& markers_of_reference = reference.surfaces.shape();
+  const FittedSurface& of_shape = shape.surfaces.OfCommon(part, markers_of_reference);
+  const FittedSurface& of_reference = reference.surfaces.OfCommon(part, markers);
+  const AlignmentSensitivity sensitivity(alignment);
+  const SurfaceNoise noise(of_shape, ComparedShape::kShape, sensitivity, shape.covariance),
       noise_of_reference(of_reference, ComparedShape::kReference, sensitivity,
                          reference.covariance);
   DeflectionField field{part.name, MakeGrid(of_reference.surface, options), {}};
-  if (!FacesLikeMarkers(of_reference, reference.shape)) {
+  if (!FacesLikeMarkers(of_reference, markers_of_reference)) {
     for (Eigen::Vector3d& normal : field.reference.normals) normal = -normal;
   }
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
@@ -61,13 +50,13 @@ DeflectionField FieldBetween(const ShapeDeviation& deviation, const PointCovaria
 
 // The grid of the shape's surface moved to the design.
 DeflectionField FieldFrom(const MeshDistance& design, const ShapeDeviation& deviation,
-                          const PointCovariance& covariance, const LayoutPart& part,
+                          const UncertainSurfaces& shape, const LayoutPart& part,
                           const GridOptions& options, const EdgeOptions& edge) {
   const double reach_m = kMPerMm * edge.tolerance_mm;
   const double design_variance_m2 = deviation.surface_sigma_m * deviation.surface_sigma_m;
-  const FittedSurface fit = FitSurface(CollectSurfaceInput(deviation.aligned_shape, part));
+  const FittedSurface& fit = shape.surfaces.Of(part);
   const AlignmentSensitivity sensitivity(deviation.alignment);
-  const SurfaceNoise noise(fit, ComparedShape::kShape, sensitivity, covariance);
+  const SurfaceNoise noise(fit, ComparedShape::kShape, sensitivity, shape.covariance);
   DeflectionField field{part.name, MakeGrid(fit.surface, options), {}};
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
     const Eigen::Vector2d& at = field.reference.surface_parameters[i];
@@ -101,23 +90,20 @@ DeflectionReport ForEachPart(const Layout& layout, const std::string& wanted_par
 
 }  // namespace
 
-DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
-                                    const PointCovariance& covariance,
-                                    const UncertainShape& reference, const Layout& layout,
-                                    const GridOptions& grid, const std::string& part,
-                                    const EdgeOptions&) {
+DeflectionReport ComputeDeflections(const Alignment& alignment, const UncertainSurfaces& shape,
+                                    const UncertainSurfaces& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part) {
   return ForEachPart(layout, part, [&](const LayoutPart& p) {
-    return FieldBetween(deviation, covariance, reference, p, grid);
+    return FieldBetween(alignment, shape, reference, p, grid);
   });
 }
 
-DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
-                                    const PointCovariance& covariance,
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation, const UncertainSurfaces& shape,
                                     const MeshDistance& reference, const Layout& layout,
                                     const GridOptions& grid, const std::string& part,
                                     const EdgeOptions& edge) {
   return ForEachPart(layout, part, [&](const LayoutPart& p) {
-    return FieldFrom(reference, deviation, covariance, p, grid, edge);
+    return FieldFrom(reference, deviation, shape, p, grid, edge);
   });
 }
 

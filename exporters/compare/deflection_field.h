@@ -19,6 +19,7 @@
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
 #include "exporters/shape/marker_shape.h"
+#include "exporters/surface/shape_surfaces.h"
 #include "importer/layout/layout.h"
 
 namespace velamap {
@@ -51,16 +52,20 @@ struct DeflectionReport {
   std::vector<std::string> notes;       // parts without one, with the reason
 };
 
-// `deviation` comes from CompareWithShape() or CompareWithMesh() with the same reference, and
-// `covariance` is of the corners of the shape, in its own frame. An empty `part` means all parts.
-// Only a design has an edge; between shapes `edge` is not used.
-DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
-                                    const PointCovariance& covariance,
-                                    const UncertainShape& reference, const Layout& layout,
-                                    const GridOptions& grid, const std::string& part = "",
-                                    const EdgeOptions& edge = {});
-DeflectionReport ComputeDeflections(const ShapeDeviation& deviation,
-                                    const PointCovariance& covariance,
+// The surfaces of a shape in the frame of the reference, and the covariance of its corners in its
+// own frame.
+struct UncertainSurfaces {
+  const ShapeSurfaces& surfaces;
+  const PointCovariance& covariance;
+};
+
+// Of ShapeDeviation::aligned_shape from the reference: `alignment` and `deviation` come from
+// CompareWithShape() or CompareWithMesh(). An empty `part` means all parts. Only a design has an
+// edge.
+DeflectionReport ComputeDeflections(const Alignment& alignment, const UncertainSurfaces& shape,
+                                    const UncertainSurfaces& reference, const Layout& layout,
+                                    const GridOptions& grid, const std::string& part = "");
+DeflectionReport ComputeDeflections(const ShapeDeviation& deviation, const UncertainSurfaces& shape,
                                     const MeshDistance& reference, const Layout& layout,
                                     const GridOptions& grid, const std::string& part = "",
                                     const EdgeOptions& edge = {});

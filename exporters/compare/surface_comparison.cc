@@ -16,16 +16,12 @@ TriangleMesh MeshOf(const FittedSurface& fit, const Layout& layout) {
   return MeshSurface(fit.surface, DefaultMeshOptions(fit.surface, layout.marker_length_m));
 }
 
-TriangleMesh MeshOf(const MarkerShape& shape, const LayoutPart& part, const Layout& layout) {
-  return MeshOf(FitSurface(CollectSurfaceInput(shape, part)), layout);
-}
-
 // The surface of the reference, turned so that its triangles face as most of the markers do.
-TriangleMesh FacingMesh(const MarkerShape& reference, const LayoutPart& part,
+TriangleMesh FacingMesh(const ShapeSurfaces& reference, const LayoutPart& part,
                         const Layout& layout) {
-  const FittedSurface fit = FitSurface(CollectSurfaceInput(reference, part));
+  const FittedSurface& fit = reference.Of(part);
   TriangleMesh mesh = MeshOf(fit, layout);
-  if (FacesLikeMarkers(fit, reference)) return mesh;
+  if (FacesLikeMarkers(fit, reference.shape())) return mesh;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }
@@ -51,13 +47,13 @@ SurfaceDeviation Measure(const std::string& part, TriangleMesh mesh, const MeshD
 // `measure` compares the mesh of one part. It throws DataError if the reference has no surface
 // there.
 template <typename Function>
-SurfaceComparison CompareEachPart(const MarkerShape& shape, const Layout& layout,
+SurfaceComparison CompareEachPart(const ShapeSurfaces& shape, const Layout& layout,
                                   const std::string& wanted_part, const Function& measure) {
   SurfaceComparison comparison;
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty() || (!wanted_part.empty() && part.name != wanted_part)) continue;
     try {
-      comparison.parts.push_back(measure(part, MeshOf(shape, part, layout)));
+      comparison.parts.push_back(measure(part, MeshOf(shape.Of(part), layout)));
     } catch (const DataError& error) {
       comparison.notes.push_back(fmt::format("{}: no surface: {}", part.name, error.what()));
     }
@@ -67,15 +63,15 @@ SurfaceComparison CompareEachPart(const MarkerShape& shape, const Layout& layout
 
 }  // namespace
 
-SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                  const Layout& layout, const std::string& part,
-                                  const EdgeOptions& edge) {
+SurfaceComparison CompareSurfaces(const ShapeSurfaces& aligned_shape,
+                                  const ShapeSurfaces& reference, const Layout& layout,
+                                  const std::string& part, const EdgeOptions& edge) {
   return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
     return Measure(p.name, std::move(mesh), MeshDistance(FacingMesh(reference, p, layout)), edge);
   });
 }
 
-SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDistance& reference,
+SurfaceComparison CompareSurfaces(const ShapeSurfaces& aligned_shape, const MeshDistance& reference,
                                   const Layout& layout, const std::string& part,
                                   const EdgeOptions& edge) {
   return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {

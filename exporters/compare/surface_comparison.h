@@ -8,7 +8,7 @@
 
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/mesh_triangles.h"
-#include "exporters/shape/marker_shape.h"
+#include "exporters/surface/shape_surfaces.h"
 #include "importer/base/statistics.h"
 #include "importer/layout/layout.h"
 
@@ -29,14 +29,14 @@ struct SurfaceComparison {
   std::vector<std::string> notes;       // parts without a surface, with the reason
 };
 
-// Compares the surface of FitSurface() through each part with horizontal lines, at the vertices of
-// the mesh that shape_exporter writes. `aligned_shape` is in the frame of the reference
+// Compares the surface through each part with horizontal lines, at the vertices of the mesh that
+// shape_exporter writes. `aligned_shape` is in the frame of the reference
 // (ShapeDeviation::aligned_shape). Between two shapes, distances are positive on the side to which
 // the markers of the reference face. An empty `part` means all parts.
-SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                  const Layout& layout, const std::string& part = "",
-                                  const EdgeOptions& edge = {});
-SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDistance& reference,
+SurfaceComparison CompareSurfaces(const ShapeSurfaces& aligned_shape,
+                                  const ShapeSurfaces& reference, const Layout& layout,
+                                  const std::string& part = "", const EdgeOptions& edge = {});
+SurfaceComparison CompareSurfaces(const ShapeSurfaces& aligned_shape, const MeshDistance& reference,
                                   const Layout& layout, const std::string& part = "",
                                   const EdgeOptions& edge = {});
 

@@ -84,6 +84,7 @@ std::vector<ReportSurface> MakeReportSurfaces(const SailShape& sail,
     result.push_back({surface.part, true, surface.area_m2, std::nullopt,
                       kMmPerM * surface.fit.distance_m.rms, std::nullopt,
                       std::move(mesh.vertices_m), std::move(mesh.triangles)});
+    if (surface.rms_sigma_m) result.back().sigma_mm = kMmPerM * *surface.rms_sigma_m;
   }
   for (const PartSurface& part : freeform.surfaces) {
     const FreeformSurface& surface = part.surface;

@@ -40,6 +40,7 @@ struct SailSurface {
   FittedSurface fit;
   TriangleMesh mesh;
   double area_m2 = 0.0;
+  std::optional<double> rms_sigma_m;  // RmsSigma()
 };
 
 struct SailShape {

@@ -32,12 +32,19 @@ AlignmentOptions WithMethod(AlignmentMethod method) {
   return options;
 }
 
+DeflectionReport ReportOf(const ShapeDeviation& deviation, const UncertainShape& shape,
+                          const UncertainShape& reference, const GridOptions& grid) {
+  return ComputeDeflections(
+      deviation.alignment, {ShapeSurfaces(deviation.aligned_shape), shape.covariance},
+      {ShapeSurfaces(reference.shape), reference.covariance}, BoatLayout(), grid);
+}
+
 // Both in one frame, with the sigmas of the shapes.
 DeflectionReport ReportOf(const MarkerShape& shape, const MarkerShape& reference) {
   const UncertainShape uncertain = WithSigmas(shape), uncertain_reference = WithSigmas(reference);
-  return ComputeDeflections(CompareWithShape(uncertain, uncertain_reference, BoatLayout(),
-                                             WithMethod(AlignmentMethod::kNone)),
-                            uncertain.covariance, uncertain_reference, BoatLayout(), Grid());
+  return ReportOf(CompareWithShape(uncertain, uncertain_reference, BoatLayout(),
+                                   WithMethod(AlignmentMethod::kNone)),
+                  uncertain, uncertain_reference, Grid());
 }
 
 DeflectionField FieldOf(const MarkerShape& shape, const MarkerShape& reference) {
@@ -48,10 +55,12 @@ DeflectionField FieldOf(const MarkerShape& shape, const MarkerShape& reference) 
 DeflectionReport ReportFrom(const MeshDistance& design, const MarkerShape& shape,
                             double design_sigma_m = 0.0) {
   const UncertainShape uncertain = WithSigmas(shape);
-  return ComputeDeflections(
+  const ShapeDeviation deviation =
       CompareWithMesh(uncertain, design, BoatLayout(), WithMethod(AlignmentMethod::kNone), "sail",
-                      {}, design_sigma_m),
-      uncertain.covariance, design, BoatLayout(), Grid());
+                      {}, design_sigma_m);
+  return ComputeDeflections(deviation,
+                            {ShapeSurfaces(deviation.aligned_shape), uncertain.covariance}, design,
+                            BoatLayout(), Grid());
 }
 
 double LargestVector(const DeflectionField& field) {
@@ -157,9 +166,12 @@ TEST(Deflections, SigmasAreWhatRepetitionsScatterBy) {
     uncertain.covariance.factor.block<3, 1>(3 * static_cast<Eigen::Index>(i), 0) =
         1e-3 * *FindMarker(boat, id.marker_id)->x_in_shape_m[static_cast<std::size_t>(id.corner)];
   }
+  const ShapeSurfaces of_boat(boat);
   const auto field_of = [&](const UncertainShape& shape, const UncertainShape& reference) {
-    return ComputeDeflections(CompareWithShape(shape, reference, BoatLayout(), {}),
-                              shape.covariance, reference, BoatLayout(), {5, 5})
+    const ShapeDeviation deviation = CompareWithShape(shape, reference, BoatLayout(), {});
+    return ComputeDeflections(deviation.alignment,
+                              {ShapeSurfaces(deviation.aligned_shape), shape.covariance},
+                              {of_boat, reference.covariance}, BoatLayout(), {5, 5})
         .fields.at(0);
   };
   const DeflectionField field = field_of(uncertain, uncertain);
@@ -190,8 +202,7 @@ TEST(Deflections, HaveNoSigmaWhereTheMarkersHaveNone) {
   const ShapeDeviation deviation = CompareWithShape(uncertain, WithSigmas(boat), BoatLayout(), {});
   ASSERT_EQ(deviation.num_with_sigma, 0);
   const DeflectionField field =
-      ComputeDeflections(deviation, uncertain.covariance, WithSigmas(boat), BoatLayout(), Grid())
-          .fields.at(0);
+      ReportOf(deviation, uncertain, WithSigmas(boat), Grid()).fields.at(0);
   for (const auto& deflection : field.deflections) EXPECT_FALSE(deflection->sigma_m.has_value());
 }
 
