@@ -11,6 +11,7 @@
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
+#include "exporters/sail/surface_sigma.h"
 #include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface_attempt.h"
 #include "exporters/surface/surface_csv.h"
@@ -46,7 +47,7 @@ void CheckEdges(const MarkerShape& shape, const SurfaceEdges& edges) {
 }
 
 SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
-                            const SailOptions& options) {
+                            const PointCovariance* covariance, const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
   SurfaceOptions of_part = options.surface;
@@ -55,7 +56,7 @@ SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, cons
   CheckEdges(shape, of_part.edges);
   surface.fit = FitSurface(CollectSurfaceInput(shape, part), of_part);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
-  surface.rms_sigma_m = RmsSigma(surface.fit);
+  if (covariance != nullptr) surface.rms_sigma_m = RmsSigma(surface.fit, *covariance);
   surface.mesh = MeshSurface(
       surface.fit.surface,
       options.mesh.value_or(DefaultMeshOptions(surface.fit.surface, layout.marker_length_m)));
@@ -140,7 +141,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
       continue;
     }
     const auto fit = [&] {
-      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, options));
+      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, covariance, options));
       return sail.surfaces.back().fit.notes;
     };
     TryFitSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);

@@ -40,7 +40,9 @@ struct SailSurface {
   FittedSurface fit;
   TriangleMesh mesh;
   double area_m2 = 0.0;
-  std::optional<double> rms_sigma_m;  // RmsSigma()
+  // Along the normal, over its area, with the errors that markers share; nothing without a
+  // covariance or if the markers are interpolated.
+  std::optional<double> rms_sigma_m;
 };
 
 struct SailShape {

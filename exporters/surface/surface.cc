@@ -1,7 +1,6 @@
 #include "exporters/surface/surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -200,21 +199,6 @@ void SurfaceOptions::Check() const {
 
 std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
   return SigmaAt(fit.surface, fit.pole_covariance_m2, u, v);
-}
-
-std::optional<double> RmsSigma(const FittedSurface& fit) {
-  double area_m2 = 0.0, sum_m4 = 0.0;
-  for (const QuadratureNode& u : SpanQuadrature(fit.surface.knots_u)) {
-    for (const QuadratureNode& v : SpanQuadrature(fit.surface.knots_v)) {
-      const std::optional<double> sigma_m = SigmaAt(fit, u.parameter, v.parameter);
-      if (!sigma_m) return std::nullopt;
-      const SurfaceJet jet = EvaluateJet(fit.surface, u.parameter, v.parameter);
-      const double part_m2 = u.weight * v.weight * jet.x_u.cross(jet.x_v).norm();
-      area_m2 += part_m2;
-      sum_m4 += part_m2 * *sigma_m * *sigma_m;
-    }
-  }
-  return std::sqrt(sum_m4 / area_m2);
 }
 
 std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v) {

@@ -94,9 +94,6 @@ struct FittedSurface {
 // The noise counts as independent from marker to marker.
 std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v);
 
-// Root mean square of SigmaAt() over the area.
-std::optional<double> RmsSigma(const FittedSurface& fit);
-
 // How the surface at a place depends on the markers of the fit.
 struct SurfaceDependence {
   Eigen::VectorXd point_weights;  // by FittedSurface::points; they sum to 1

@@ -116,4 +116,10 @@ double TruthRms(const SplineSurface& surface, const SurfaceTruth& truth) {
   return ComputeStatistics(distances).rms;
 }
 
+SurfaceInput NoisySail() {
+  SurfaceInput input = CornersOn(TwistedSail, 7, 9, 0.02, 0.01);
+  AddNoise(0.002, true, 1, &input);
+  return input;
+}
+
 }  // namespace velamap

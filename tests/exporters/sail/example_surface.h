@@ -58,4 +58,7 @@ double TruthRms(const SplineSurface& surface, const SurfaceTruth& truth);
 // The largest distance of the true points of a dense grid from the surface, m.
 double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth);
 
+// Seven lines of nine markers on TwistedSail, with noise and sigmas.
+SurfaceInput NoisySail();
+
 }  // namespace velamap

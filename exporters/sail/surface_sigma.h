@@ -1,0 +1,18 @@
+// How well a surface is known with all that the sigmas of its markers contain, the errors that they
+// share too. Private to this folder.
+
+#pragma once
+
+#include <optional>
+
+#include "exporters/surface/surface.h"
+#include "reconstruct/geometry/point_covariance.h"
+
+namespace velamap {
+
+// Root mean square over the area of the sigma along the normal, m: from the joint covariance of the
+// corners, or from the residuals of the surface where they show more noise, and from the smoothing.
+// Nothing if the covariance lacks a corner of the fit, or if the markers are interpolated.
+std::optional<double> RmsSigma(const FittedSurface& fit, const PointCovariance& covariance);
+
+}  // namespace velamap
