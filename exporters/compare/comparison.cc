@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "exporters/compare/comparison_report.h"
-#include "exporters/shape/sail_lines.h"
 #include "importer/base/files.h"
 
 namespace velamap {
@@ -44,10 +43,6 @@ std::string NameOfShape(const std::string& path) {
   return folder.has_filename() ? folder.filename().string() : file;
 }
 
-bool HasDeflections(const Layout& layout, const ComparisonOptions& options) {
-  return options.with_deflections && FirstPartWithLines(layout) != nullptr;
-}
-
 // The markers only.
 Comparison WithoutSurfaces(const std::string& name, ShapeDeviation deviation,
                            const Layout& layout) {
@@ -69,7 +64,7 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
   const Alignment& alignment = comparison.deviation.alignment;
   const ShapeSurfaces of_shape(comparison.deviation.aligned_shape), of_reference(reference.shape);
   comparison.surfaces = CompareSurfaces(of_shape, of_reference, layout, options.part, options.edge);
-  if (HasDeflections(layout, options)) {
+  if (options.with_deflections) {
     comparison.deflections = ComputeDeflections(alignment, {of_shape, shape.covariance},
                                                 {of_reference, reference.covariance}, layout,
                                                 options.grid, options.part);
@@ -89,7 +84,7 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
   if (!comparison.has_layout) return comparison;
   const ShapeSurfaces of_shape(comparison.deviation.aligned_shape);
   comparison.surfaces = CompareSurfaces(of_shape, reference, layout, options.part, options.edge);
-  if (HasDeflections(layout, options)) {
+  if (options.with_deflections) {
     comparison.deflections =
         ComputeDeflections(comparison.deviation, {of_shape, shape.covariance}, reference, layout,
                            options.grid, options.part, options.edge);

@@ -44,12 +44,6 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   return block;
 }
 
-bool HasAllCorners(const PointCovariance& covariance, const CornerGradient& by_corner) {
-  return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
-    return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
-  });
-}
-
 }  // namespace
 
 PointCovariance CovarianceFromSigmas(const MarkerShape& shape) {
@@ -135,8 +129,9 @@ std::optional<double> AlignmentSensitivity::VarianceAt(const Eigen::Vector3d& x_
                                                        CornerGradient own, ComparedShape whose,
                                                        const PointCovariance& covariance) const {
   AddAlignment(x_in_reference_m, direction, &own);
-  if (!HasAllCorners(covariance, own)) return std::nullopt;
-  return VarianceOf(covariance, InFrameOf(whose, own));
+  const PointGradient gradient = InFrameOf(whose, own);
+  if (!HasPointsOf(gradient, &covariance)) return std::nullopt;
+  return VarianceOf(covariance, gradient);
 }
 
 std::optional<Eigen::Matrix3d> AlignmentSensitivity::CenterCovariance(
@@ -149,8 +144,8 @@ std::optional<Eigen::Matrix3d> AlignmentSensitivity::CenterCovariance(
       gradient[{marker.marker_id, corner}] = direction / kNumCorners;
     }
     AddAlignment(marker.center_in_reference_m, direction, &gradient);
-    if (!HasAllCorners(covariance, gradient)) return std::nullopt;
     gradients.push_back(InFrameOf(whose, gradient));
+    if (!HasPointsOf(gradients.back(), &covariance)) return std::nullopt;
   }
   return Eigen::Matrix3d(JointCovarianceOf(covariance, gradients));
 }

@@ -1,6 +1,5 @@
 #include "exporters/compare/surface_noise.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace velamap {
@@ -21,8 +20,7 @@ std::optional<double> SurfaceNoise::VarianceAt(double u, double v,
   const auto of_markers_m2 = sensitivity_.VarianceAt(EvaluatePoint(fit_.surface, u, v), direction,
                                                      std::move(own), whose_, covariance_);
   if (!of_markers_m2) return std::nullopt;
-  return std::max(*of_markers_m2, dependence->noise_variance_m2) +
-         dependence->smoothing_variance_m2;
+  return dependence->VarianceWith(*of_markers_m2);
 }
 
 }  // namespace velamap

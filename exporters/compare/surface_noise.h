@@ -21,9 +21,8 @@ class SurfaceNoise {
                const AlignmentSensitivity& sensitivity, const PointCovariance& covariance);
 
   // Variance of the surface at a place along a unit vector: from the noise of its markers, from
-  // what this does to the alignment, and from the smoothing. Where the residuals of the surface
-  // show more noise than the sigmas of the markers say, theirs counts. Nothing if a sigma that it
-  // depends on is unknown, or if the surface interpolates.
+  // what this does to the alignment, and from the smoothing (SurfaceDependence::VarianceWith).
+  // Nothing if a sigma that it depends on is unknown, or if the surface interpolates.
   std::optional<double> VarianceAt(double u, double v, const Eigen::Vector3d& direction) const;
 
  private:

@@ -56,7 +56,7 @@ SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, cons
   CheckEdges(shape, of_part.edges);
   surface.fit = FitSurface(CollectSurfaceInput(shape, part), of_part);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
-  if (covariance != nullptr) surface.rms_sigma_m = RmsSigma(surface.fit, *covariance);
+  surface.rms_sigma_m = RmsSigma(surface.fit, covariance);
   surface.mesh = MeshSurface(
       surface.fit.surface,
       options.mesh.value_or(DefaultMeshOptions(surface.fit.surface, layout.marker_length_m)));

@@ -1,35 +1,33 @@
 #include "exporters/sail/surface_sigma.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_sigma.h"
+
 namespace velamap {
 namespace {
 
-// Along `normal`, m^2. Nothing if the markers are interpolated.
+// Along `normal`, m^2.
 std::optional<double> VarianceAt(const FittedSurface& fit, double u, double v,
-                                 const Eigen::Vector3d& normal, const PointCovariance& covariance) {
+                                 const Eigen::Vector3d& normal, const PointCovariance* covariance) {
   const std::optional<SurfaceDependence> dependence = DependenceAt(fit, u, v);
   if (!dependence) return std::nullopt;
   PointGradient gradient;
   for (std::size_t k = 0; k < fit.points.size(); ++k) {
     const double weight = dependence->point_weights[static_cast<Eigen::Index>(k)];
-    gradient.emplace_back(Point3DIdFromCorner(fit.points[k]), weight * normal);
+    AddPointGradient(fit.points[k].marker_id, fit.points[k].corner, weight * normal, &gradient);
   }
-  return std::max(VarianceOf(covariance, gradient), dependence->noise_variance_m2) +
-         dependence->smoothing_variance_m2;
+  const std::optional<double> by_markers_m = SigmaOf(covariance, gradient);
+  if (!by_markers_m) return std::nullopt;
+  return dependence->VarianceWith(*by_markers_m * *by_markers_m);
 }
 
 }  // namespace
 
-std::optional<double> RmsSigma(const FittedSurface& fit, const PointCovariance& covariance) {
-  constexpr int kNumCells = 12;  // along u and along v
-  const bool has_all = std::all_of(fit.points.begin(), fit.points.end(), [&](const CornerId& id) {
-    return id.corner > 0 && covariance.IndexOf(Point3DIdFromCorner(id)) >= 0;
-  });
-  if (!has_all) return std::nullopt;
+std::optional<double> RmsSigma(const FittedSurface& fit, const PointCovariance* covariance) {
+  constexpr int kNumCells = 12;  // along u and along v; each takes a product with the covariance
   double area = 0.0, sum_m2 = 0.0;
   for (int i = 0; i < kNumCells; ++i) {
     for (int j = 0; j < kNumCells; ++j) {

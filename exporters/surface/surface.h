@@ -25,6 +25,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -100,6 +101,12 @@ struct SurfaceDependence {
   // The two parts of the square of SigmaAt(): from the noise of the markers as the residuals show
   // it, independent from marker to marker, and from what the smoothing may have flattened.
   double noise_variance_m2 = 0.0, smoothing_variance_m2 = 0.0;
+
+  // Of the surface, where the sigmas of its markers give `by_markers_m2` instead of independent
+  // noise. Where the residuals show more noise than that, theirs counts.
+  double VarianceWith(double by_markers_m2) const {
+    return std::max(by_markers_m2, noise_variance_m2) + smoothing_variance_m2;
+  }
 };
 // Nothing if the markers are interpolated.
 std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v);

@@ -35,10 +35,11 @@ TEST(SurfaceSigma, HoldsWhatTheMarkersShareAndWhatTheResidualsShow) {
     }
     return std::make_pair(least, largest);
   }();
-  const double by_residuals_m = RmsSigma(fit, SharedBy(fit, 0.0)).value();
+  const PointCovariance none = SharedBy(fit, 0.0), shared = SharedBy(fit, 0.05);
+  const double by_residuals_m = RmsSigma(fit, &none).value();
   EXPECT_GT(by_residuals_m, least_m);
   EXPECT_LT(by_residuals_m, largest_m);
-  const double shared_m = RmsSigma(fit, SharedBy(fit, 0.05)).value();
+  const double shared_m = RmsSigma(fit, &shared).value();
   EXPECT_GE(shared_m, 0.05 * (1 - 1e-6));
   EXPECT_LT(shared_m, std::hypot(0.05, largest_m));
 }
@@ -46,10 +47,10 @@ TEST(SurfaceSigma, HoldsWhatTheMarkersShareAndWhatTheResidualsShow) {
 TEST(SurfaceSigma, IsUnknownWithoutACornerOrForAnInterpolatingSurface) {
   const FittedSurface fit = FitSurface(NoisySail());
   PointCovariance covariance = SharedBy(fit, 0.01);
+  EXPECT_FALSE(RmsSigma(FitSurface(AsExact(NoisySail())), &covariance).has_value());
   covariance.point3D_ids.back() += 10000;
-  EXPECT_FALSE(RmsSigma(fit, covariance).has_value());
-  const FittedSurface exact = FitSurface(AsExact(NoisySail()));
-  EXPECT_FALSE(RmsSigma(exact, SharedBy(fit, 0.01)).has_value());
+  EXPECT_FALSE(RmsSigma(fit, &covariance).has_value());
+  EXPECT_FALSE(RmsSigma(fit, nullptr).has_value());
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ TEST(FormationEstimation, NoiseWidensTheSigmaOfTheInset) {
   MarkerGridOptions scene = DrawScene(&random);
   scene.side_px = 30;
   double before_px = 0.0;
-  for (const double noise_sigma : {1.0, 20.0, 40.0}) {
+  for (const double noise_sigma : {1.0, 10.0, 20.0, 30.0, 40.0}) {
     scene.rendering.noise_sigma = noise_sigma;
     const double sigma_px = EstimateFormation(Samples(MakeMarkerGrid(scene)), false).inset_sigma_px;
     EXPECT_GT(sigma_px, before_px);
