@@ -59,9 +59,9 @@ struct UncertainSurfaces {
   const PointCovariance& covariance;
 };
 
-// Of ShapeDeviation::aligned_shape from the reference: `alignment` and `deviation` come from
-// CompareWithShape() or CompareWithMesh(). An empty `part` means all parts. Only a design has an
-// edge.
+// Computes how far the aligned shape is from the reference. `alignment` and `deviation` come from
+// CompareWithShape() or CompareWithMesh(), and `shape` has the surfaces of
+// ShapeDeviation::aligned_shape. An empty `part` means all parts. Only a design has an edge.
 DeflectionReport ComputeDeflections(const Alignment& alignment, const UncertainSurfaces& shape,
                                     const UncertainSurfaces& reference, const Layout& layout,
                                     const GridOptions& grid, const std::string& part = "");

@@ -1,5 +1,4 @@
-// How well a surface is known with all that the sigmas of its markers contain, the errors that they
-// share too. Private to this folder.
+// How well a surface is known, including the errors that its markers share. Private to this folder.
 
 #pragma once
 

@@ -1,6 +1,5 @@
-// The smooth surfaces through the parts of a shape. A comparison needs each several times, and a
-// fit takes longer than all else, so that a surface is fitted when it is first asked for and then
-// kept.
+// The smooth surfaces through the parts of a shape. A comparison needs each of them several times,
+// and fits take much of its time, so a surface is fitted when it is first asked for and then kept.
 
 #pragma once
 
@@ -15,7 +14,7 @@
 
 namespace velamap {
 
-// Not for several threads at once.
+// Not thread-safe.
 class ShapeSurfaces {
  public:
   explicit ShapeSurfaces(MarkerShape shape);
