@@ -18,8 +18,6 @@ constexpr int kMaxNumIntrinsics = 12;
 
 template <int kCols>
 using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
-using JacobianMap =
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 // Derivative of the projection with respect to the camera's parameters.
 RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
@@ -116,10 +114,7 @@ MarkerViewError::MarkerViewError(CameraModel camera_model, int num_corners_in_bl
 bool MarkerViewError::Evaluate(double const* const* parameters, double* residuals,
                                double** jacobians) const {
   const ViewParameters view(parameters);
-  const auto map = [&](std::size_t i) {
-    double* data = jacobians == nullptr ? nullptr : jacobians[i];
-    return JacobianMap(data, data == nullptr ? 0 : num_residuals(), parameter_block_sizes()[i]);
-  };
+  const auto map = [&](std::size_t i) { return MapJacobian(*this, jacobians, i); };
   ViewJacobians maps = {map(0), map(1), map(2), map(3), map(4)};
   if (maps[0].rows() > 0) maps[0].setZero();
   const int num_corners = static_cast<int>(corners_.size());

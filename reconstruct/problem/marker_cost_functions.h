@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <ceres/cost_function.h>
@@ -41,6 +42,18 @@ struct CornerObservation {
 // The corner in a slot of a marker block.
 inline Eigen::Map<const Eigen::Vector3d> CornerOfBlock(const double* marker, int slot) {
   return Eigen::Map<const Eigen::Vector3d>(marker + 3 * slot);
+}
+
+using JacobianMap =
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+// Where Evaluate() of `error` puts the derivatives by one parameter block. `jacobians` is what
+// Ceres passes; the map has no rows if Ceres does not ask for these derivatives.
+inline JacobianMap MapJacobian(const ceres::CostFunction& error, double** jacobians,
+                               std::size_t block_idx) {
+  double* data = jacobians == nullptr ? nullptr : jacobians[block_idx];
+  return JacobianMap(data, data == nullptr ? 0 : error.num_residuals(),
+                     error.parameter_block_sizes()[block_idx]);
 }
 
 // Applies the Cauchy loss to a whitened residual r itself, so that one residual block can hold

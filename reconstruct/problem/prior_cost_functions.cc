@@ -1,6 +1,5 @@
 #include "reconstruct/problem/prior_cost_functions.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,9 +12,6 @@
 
 namespace velamap {
 namespace {
-
-using JacobianMap =
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 // Residual of the difference of the diagonals. Its derivative goes to a row of `jacobian`, unless
 // that is empty.
@@ -80,37 +76,33 @@ MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<i
 bool MarkerPriorError::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
   const int num_sides = static_cast<int>(sides_.size());
-  double* by_marker = jacobians == nullptr ? nullptr : jacobians[0];
-  const std::array<double*, 2> by_scales = {jacobians == nullptr ? nullptr : jacobians[1],
-                                            jacobians == nullptr ? nullptr : jacobians[2]};
+  JacobianMap by_marker = MapJacobian(*this, jacobians, 0);
+  std::array<JacobianMap, 2> by_scales = {MapJacobian(*this, jacobians, 1),
+                                          MapJacobian(*this, jacobians, 2)};
   const double scale = 1.0 + parameters[1][0] + parameters[2][0];
-  JacobianMap marker_map(by_marker, by_marker == nullptr ? 0 : num_residuals(),
-                         parameter_block_sizes()[0]);
-  marker_map.setZero();
-  for (double* by_scale : by_scales) {
-    if (by_scale != nullptr) std::fill(by_scale, by_scale + num_residuals(), 0.0);
-  }
+  by_marker.setZero();
+  for (JacobianMap& by_scale : by_scales) by_scale.setZero();
   for (int i = 0; i < num_sides; ++i) {
     const auto [a, b] = sides_[i];
     const Eigen::Vector3d side = CornerOfBlock(parameters[0], b) - CornerOfBlock(parameters[0], a);
     const double length_m = side.norm();
     residuals[i] = (length_m - scale * prior_.length_m) / prior_.side_sigma_m;
-    if (by_marker != nullptr) {
+    if (by_marker.rows() > 0) {
       const Eigen::RowVector3d direction = side.transpose() / (length_m * prior_.side_sigma_m);
-      marker_map.block<1, 3>(i, 3 * a) = -direction;
-      marker_map.block<1, 3>(i, 3 * b) = direction;
+      by_marker.block<1, 3>(i, 3 * a) = -direction;
+      by_marker.block<1, 3>(i, 3 * b) = direction;
     }
-    for (double* by_scale : by_scales) {
-      if (by_scale != nullptr) by_scale[i] = -prior_.length_m / prior_.side_sigma_m;
+    for (JacobianMap& by_scale : by_scales) {
+      if (by_scale.rows() > 0) by_scale(i, 0) = -prior_.length_m / prior_.side_sigma_m;
     }
   }
   if (has_diagonals_) {
     residuals[num_sides] =
-        EvaluateDiagonals(parameters[0], prior_.diagonals_sigma_m, num_sides, &marker_map);
+        EvaluateDiagonals(parameters[0], prior_.diagonals_sigma_m, num_sides, &by_marker);
   }
   if (has_flatness_) {
     const int row = num_residuals() - 1;
-    residuals[row] = EvaluateFlatness(parameters[0], prior_.flatness_sigma_m, row, &marker_map);
+    residuals[row] = EvaluateFlatness(parameters[0], prior_.flatness_sigma_m, row, &by_marker);
   }
   return true;
 }
@@ -154,15 +146,13 @@ bool ParameterPriorError::Evaluate(double const* const* parameters, double* resi
                                    double** jacobians) const {
   const int count = num_residuals();
   for (int i = 0; i < count; ++i) residuals[i] = (parameters[0][i] - mean_[i]) / sigma_[i];
-  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-  JacobianMap map(jacobians[0], count, count);
-  map.setZero();
-  for (int i = 0; i < count; ++i) map(i, i) = 1.0 / sigma_[i];
+  JacobianMap by_params = MapJacobian(*this, jacobians, 0);
+  by_params.setZero();
+  for (int i = 0; i < by_params.rows(); ++i) by_params(i, i) = 1.0 / sigma_[i];
   return true;
 }
 
-PixelShapeError::PixelShapeError(int num_params, double sigma)
-    : num_params_(num_params), sigma_(sigma) {
+PixelShapeError::PixelShapeError(int num_params, double sigma) : sigma_(sigma) {
   set_num_residuals(1);
   *mutable_parameter_block_sizes() = {num_params};
 }
@@ -172,10 +162,11 @@ bool PixelShapeError::Evaluate(double const* const* parameters, double* residual
   const double fx = parameters[0][0], fy = parameters[0][1];
   if (!(fx > 0 && fy > 0)) return false;
   residuals[0] = std::log(fx / fy) / sigma_;
-  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-  std::fill_n(jacobians[0], num_params_, 0.0);
-  jacobians[0][0] = 1.0 / (fx * sigma_);
-  jacobians[0][1] = -1.0 / (fy * sigma_);
+  JacobianMap by_params = MapJacobian(*this, jacobians, 0);
+  if (by_params.rows() == 0) return true;
+  by_params.setZero();
+  by_params(0, 0) = 1.0 / (fx * sigma_);
+  by_params(0, 1) = -1.0 / (fy * sigma_);
   return true;
 }
 

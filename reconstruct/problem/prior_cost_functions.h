@@ -77,7 +77,6 @@ class PixelShapeError : public ceres::CostFunction {
                 double** jacobians) const override;
 
  private:
-  int num_params_;
   double sigma_;
 };
 
