@@ -153,11 +153,8 @@ bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* remove
 
 bool RestoreObservation(const RemovedObservation& observation, double max_error_px, Model* model) {
   const auto point = model->points3D.find(observation.point3D_id);
-  const auto image = std::find_if(model->images.begin(), model->images.end(),
-                                  [&observation](const ModelImage& other) {
-                                    return other.image_id == observation.element.image_id;
-                                  });
-  if (point == model->points3D.end() || image == model->images.end()) return false;
+  ModelImage* image = model->FindImage(observation.element.image_id);
+  if (point == model->points3D.end() || image == nullptr) return false;
   Point2D& point2D = image->points2D.at(observation.element.point2D_idx);
   const auto projection = ImageFromCam(model->cameras.at(image->camera_id),
                                        image->cam_from_world * point->second.x_in_world);

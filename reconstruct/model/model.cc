@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -121,6 +122,10 @@ const ModelImage* Model::FindImage(ImageId image_id) const {
   return it == images.end() ? nullptr : &*it;
 }
 
+ModelImage* Model::FindImage(ImageId image_id) {
+  return const_cast<ModelImage*>(std::as_const(*this).FindImage(image_id));
+}
+
 std::string FindModelFault(const Model& model) {
   for (const auto& [camera_id, camera] : model.cameras) {
     const std::string fault = FindCameraFault(camera_id, camera);
@@ -151,10 +156,8 @@ void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& e
   const auto it = std::find_if(track.begin(), track.end(), [&element](const TrackElement& other) {
     return other.image_id == element.image_id && other.point2D_idx == element.point2D_idx;
   });
-  const auto image = std::find_if(
-      model->images.begin(), model->images.end(),
-      [&element](const ModelImage& other) { return other.image_id == element.image_id; });
-  VELAMAP_CHECK(it != track.end() && image != model->images.end());
+  ModelImage* image = model->FindImage(element.image_id);
+  VELAMAP_CHECK(it != track.end() && image != nullptr);
   image->points2D.at(element.point2D_idx).point3D_id = kInvalidPoint3DId;
   track.erase(it);
 }

@@ -49,6 +49,7 @@ struct Model {
 
   // Returns null where there is no such image.
   const ModelImage* FindImage(ImageId image_id) const;
+  ModelImage* FindImage(ImageId image_id);
 };
 
 // Describes the first fault of the model in one line that names the ids; empty for a valid model. A
