@@ -11,6 +11,7 @@
 #include "importer/base/natural_order.h"
 #include "reconstruct/adjust/marker_adjuster.h"
 #include "reconstruct/geometry/camera_conversion.h"
+#include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/turned_model.h"
 
 namespace velamap {
@@ -22,12 +23,10 @@ double Explained(const Model& model) {
   for (const ModelImage& image : model.images) {
     const Camera& camera = model.cameras.at(image.camera_id);
     const double tolerance_px = kTolerance * std::max(camera.width_px, camera.height_px);
-    for (const Point2D& point2D : image.points2D) {
-      const auto point = model.points3D.find(point2D.point3D_id);
-      if (point == model.points3D.end()) continue;
-      const auto x_px = ImageFromCam(camera, image.cam_from_world * point->second.x_in_world);
+    for (const SeenPoint& point : SeenPointsOf(model, image)) {
+      const auto x_px = ImageFromCam(camera, image.cam_from_world * point.x_in_world);
       if (!x_px) continue;
-      const double relative = (*x_px - point2D.x_in_image_px).norm() / tolerance_px;
+      const double relative = (*x_px - point.x_in_image_px).norm() / tolerance_px;
       explained += std::max(0.0, 1.0 - relative * relative);
     }
   }

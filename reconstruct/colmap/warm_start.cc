@@ -14,10 +14,9 @@ constexpr std::size_t kMinCornersOfImage = 4;
 
 std::vector<RayObservation> ObservationsOf(const Model& model, const ModelImage& image) {
   std::vector<RayObservation> observations;
-  for (const Point2D& point : image.points2D) {
-    if (point.point3D_id == kInvalidPoint3DId) continue;
+  for (const SeenPoint& point : SeenPointsOf(model, image)) {
     const auto ray = CamFromImage(model.cameras.at(image.camera_id), point.x_in_image_px);
-    if (ray) observations.push_back({model.points3D.at(point.point3D_id).x_in_world, *ray});
+    if (ray) observations.push_back({point.x_in_world, *ray});
   }
   return observations;
 }
