@@ -162,11 +162,7 @@ void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, doub
   ParallelFor(problem.markers.size(), num_threads, [&](std::size_t idx) {
     const int marker_idx = static_cast<int>(idx);
     if (IsSettled(problem, *solution, marker_idx, settled_ratio)) return;
-    places[idx].clear();
-    for (const PlaceHypothesis& place :
-         PlaceMarker(problem, *solution, marker_idx, tolerance_factor).places) {
-      places[idx].push_back(place.shape_from_marker);
-    }
+    places[idx] = PlaceMarker(problem, *solution, marker_idx, tolerance_factor).ShapeFromMarker();
   });
   solution->shape_from_marker = std::move(places);
   MarkFits(problem, tolerance_factor, solution);

@@ -168,6 +168,12 @@ std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolu
 
 }  // namespace
 
+std::vector<Sim3> MarkerPlacement::ShapeFromMarker() const {
+  std::vector<Sim3> shape_from_marker;
+  for (const PlaceHypothesis& place : places) shape_from_marker.push_back(place.shape_from_marker);
+  return shape_from_marker;
+}
+
 MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& solution, int marker_idx,
                             double tolerance_factor) {
   const std::vector<View> views = FindViews(problem, solution, marker_idx);

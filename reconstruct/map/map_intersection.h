@@ -22,6 +22,8 @@ struct MarkerPlacement {
   // exists twice or was misread.
   std::vector<int> elsewhere_idxs;
   int num_seen = 0;  // registered frames that see the marker
+
+  std::vector<Sim3> ShapeFromMarker() const;  // `places` as a MapSolution holds them
 };
 
 // Hypotheses are the planar solutions of the marker in the frames that see it and its corners

@@ -56,12 +56,8 @@ void SettlePair(const MapProblem& problem, const std::set<int>& marker_idxs,
                 MapSolution* solution) {
   for (const double tolerance_factor : {3.0, 1.0}) {
     for (const int marker_idx : marker_idxs) {
-      auto& places = solution->shape_from_marker[static_cast<std::size_t>(marker_idx)];
-      places.clear();
-      for (const auto& place :
-           PlaceMarker(problem, *solution, marker_idx, tolerance_factor).places) {
-        places.push_back(place.shape_from_marker);
-      }
+      solution->shape_from_marker[static_cast<std::size_t>(marker_idx)] =
+          PlaceMarker(problem, *solution, marker_idx, tolerance_factor).ShapeFromMarker();
     }
     MarkFits(problem, tolerance_factor, solution);
     AdjustMap(problem, {15, 1e-4}, solution);
