@@ -65,8 +65,7 @@ void MarkerAdjuster::PrepareSeed() {
   summary_.error_before_px = SummarizeReprojectionErrors(solution_.model);
   RemoveSeedOutliers({}, &solution_.model, &summary_.removed);
   RemoveUnderconstrainedParts();
-  TransformModel({MetresPerUnit(MakeMarkerState(solution_.model, *solution_.layout)),
-                  Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()},
+  TransformModel(Sim3{MetresPerUnit(MakeMarkerState(solution_.model, *solution_.layout))},
                  &solution_.model);
   MoveToFirstCamera(&solution_.model);
   solution_.state = MakeMarkerState(solution_.model, *solution_.layout);
@@ -198,8 +197,7 @@ bool MarkerAdjuster::AddScaleBars() {
   solution_.weights.scale_bars = std::move(verdict.used);
   if (verdict.print_scale_sigma > 0) {
     solution_.weights.print_scale_by_bars = verdict.print_scale_sigma;
-    TransformModel({verdict.scale, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()},
-                   &solution_.model);
+    TransformModel(Sim3{verdict.scale}, &solution_.model);
     solution_.state.print_scale = verdict.scale - 1.0;
   }
   return !solution_.weights.scale_bars.empty();
