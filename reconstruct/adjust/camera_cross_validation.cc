@@ -200,9 +200,7 @@ CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
   CrossValidation result;
   std::optional<Trial> taken;
   for (const CameraModel model : kModels) {
-    if (model == CameraModel::kOpenCVFisheye && model != wanted && !SeesWideAngles(solution)) {
-      continue;
-    }
+    if (model != wanted && !IsCandidate(model, solution)) continue;
     std::optional<Trial> trial = TryModel(model, solution);
     if (!trial) continue;
     result.scores.push_back(trial->score);
@@ -222,7 +220,7 @@ MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
   std::optional<MarkerSolution> best;
   double least_factor = std::numeric_limits<double>::infinity();
   for (const CameraModel model : kModels) {
-    if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
+    if (!IsCandidate(model, solution)) continue;
     std::optional<MarkerSolution> trial = RefinedAs(model, solution);
     if (!trial || trial->weights.corner_factor >= least_factor) continue;
     least_factor = trial->weights.corner_factor;
@@ -234,8 +232,7 @@ MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution) {
   constexpr int kMaxNumGroups = 20;
   const std::vector<int> groups = GroupImages(solution.model, kMaxNumGroups);
-  const auto num_groups =
-      static_cast<std::size_t>(std::set<int>(groups.begin(), groups.end()).size());
+  const std::size_t num_groups = std::set<int>(groups.begin(), groups.end()).size();
   std::vector<std::map<CameraId, Camera>> cameras(num_groups);
   ParallelFor(num_groups, solution.options.num_threads, [&](std::size_t group) {
     MarkerSolution fitted = Without(solution, groups, group);

@@ -16,7 +16,7 @@ constexpr std::array<CameraModel, 4> kModelsOfClips = {CameraModel::kSimpleRadia
                                                        CameraModel::kRadial, CameraModel::kOpenCV,
                                                        CameraModel::kOpenCVFisheye};
 
-constexpr double kWideRayLength = 0.7;  // tangent; a fisheye is considered beyond it
+constexpr double kWideRayLength = 0.7;  // tangent; a fisheye is a candidate beyond it
 
 void SetCameraModel(CameraModel model, MarkerSolution* solution) {
   for (auto& [camera_id, camera] : solution->model.cameras) camera = ConvertCamera(camera, model);
@@ -25,7 +25,8 @@ void SetCameraModel(CameraModel model, MarkerSolution* solution) {
 
 }  // namespace
 
-bool SeesWideAngles(const MarkerSolution& solution) {
+bool IsCandidate(CameraModel model, const MarkerSolution& solution) {
+  if (model != CameraModel::kOpenCVFisheye) return true;
   const auto& cameras = solution.model.cameras;
   return std::any_of(cameras.begin(), cameras.end(),
                      [](const auto& entry) { return MaxRayLength(entry.second) > kWideRayLength; });
@@ -54,7 +55,7 @@ std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution trial)
 MarkerSolution WithBestCameraModel(const MarkerSolution& solution) {
   std::vector<MarkerSolution> trials;
   for (const CameraModel model : kModelsOfClips) {
-    if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
+    if (!IsCandidate(model, solution)) continue;
     auto trial = RefinedAs(model, solution);
     if (trial) trials.push_back(std::move(*trial));
   }

@@ -23,9 +23,9 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 // and refined. Nothing if the refinement fails.
 std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution solution);
 
-// Whether any camera sees more than 35 degrees off its axis. With less, a fisheye's many parameters
-// would describe nothing.
-bool SeesWideAngles(const MarkerSolution& solution);
+// Whether the model is worth a trial. A fisheye is only if a camera sees more than 35 degrees off
+// its axis; with less, its many parameters would describe nothing.
+bool IsCandidate(CameraModel model, const MarkerSolution& solution);
 
 // Whether the distortion of any camera folds over inside the picture.
 bool HasFoldedCamera(const MarkerSolution& solution);
