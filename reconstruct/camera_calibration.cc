@@ -75,9 +75,9 @@ std::vector<DatabaseImage> Upright(std::vector<DatabaseImage> images,
 }
 
 std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images,
-                                        const std::vector<BoardView>& views) {
+                                        const std::vector<CalibrationView>& views) {
   std::set<ImageId> image_ids;
-  for (const BoardView& view : views) image_ids.insert(view.image_id);
+  for (const CalibrationView& view : views) image_ids.insert(view.view.image_id);
   std::vector<DatabaseImage> chosen;
   for (const DatabaseImage& image : images) {
     if (image_ids.count(image.image_id) > 0) chosen.push_back(image);
@@ -163,12 +163,10 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
   CameraCalibration calibration;
   calibration.num_images = static_cast<int>(views.size());
-  std::vector<BoardView> chosen;
   for (const std::size_t idx : ChooseBoardViews(views, grid, options.max_num_views)) {
-    chosen.push_back(views[idx]);
     calibration.views.push_back({views[idx]});
   }
-  const std::vector<DatabaseImage> used = ChosenImages(images, chosen);
+  const std::vector<DatabaseImage> used = ChosenImages(images, calibration.views);
   LogInfo("{} of {} pictures that show the board are chosen", used.size(), images.size());
   // Takes all images and not only the selected ones, because the velocity of a corner follows from
   // the neighbouring frames.
