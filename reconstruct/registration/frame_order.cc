@@ -34,9 +34,9 @@ bool UseTimeOrder(const std::vector<const DatabaseImage*>& images, FrameOrder or
 int FindCentralFrame(const std::vector<const DatabaseImage*>& images,
                      const RegistrationOptions& options) {
   const std::string& name_or_number = options.central_frame;
-  const auto fail = [&name_or_number](const std::string& what) {
-    throw InputError(OptionName(&RegistrationOptions::central_frame) + " " + name_or_number + ": " +
-                     what + "; leave the option out to let the best one be chosen");
+  const auto error = [&name_or_number](const std::string& what) {
+    return InputError(OptionName(&RegistrationOptions::central_frame) + " " + name_or_number +
+                      ": " + what + "; leave the option out to let the best one be chosen");
   };
   for (std::size_t idx = 0; idx < images.size(); ++idx) {
     const FrameDetections& frame = images[idx]->detections;
@@ -45,13 +45,12 @@ int FindCentralFrame(const std::vector<const DatabaseImage*>& images,
       continue;
     }
     if (static_cast<int>(frame.markers.size()) < options.min_num_inliers) {
-      fail("holds " + std::to_string(frame.markers.size()) + " markers; " +
-           std::to_string(options.min_num_inliers) + " are needed");
+      throw error("holds " + std::to_string(frame.markers.size()) + " markers; " +
+                  std::to_string(options.min_num_inliers) + " are needed");
     }
     return static_cast<int>(idx);
   }
-  fail("no image of that name or frame number holds markers");
-  return -1;
+  throw error("no image of that name or frame number holds markers");
 }
 
 }  // namespace velamap
