@@ -28,11 +28,12 @@ constexpr int kMaxStartFrames = 32;
 
 // Registers twice as many frames of a video as are kept, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
-  constexpr int kCandidatesPerFrame = 2;
+  constexpr std::size_t kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
   std::iota(chosen.begin(), chosen.end(), 0);
-  const int max_num_candidates = kCandidatesPerFrame * global->options.global.max_num_frames;
-  if (global->is_video && static_cast<int>(chosen.size()) > max_num_candidates) {
+  const std::size_t max_num_candidates =
+      kCandidatesPerFrame * static_cast<std::size_t>(global->options.global.max_num_frames);
+  if (global->is_video && chosen.size() > max_num_candidates) {
     chosen = ChooseCandidateFrames(global->images, max_num_candidates);
     const auto place = std::lower_bound(chosen.begin(), chosen.end(), global->central_image_idx);
     if (global->central_image_idx >= 0 &&

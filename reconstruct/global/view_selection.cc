@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "importer/geometry/pose_step.h"
@@ -58,10 +57,9 @@ double LogDeterminant(const Eigen::Matrix3d& information) {
 }  // namespace
 
 std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& images,
-                                       int max_num_frames) {
+                                       std::size_t max_num_frames) {
   std::vector<int> chosen;
-  const std::size_t num_stretches =
-      std::min(images.size(), static_cast<std::size_t>(std::max(max_num_frames, 0)));
+  const std::size_t num_stretches = std::min(images.size(), max_num_frames);
   for (std::size_t stretch = 0; stretch < num_stretches; ++stretch) {
     const std::size_t begin = stretch * images.size() / num_stretches;
     const std::size_t end = (stretch + 1) * images.size() / num_stretches;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "reconstruct/map/map_problem.h"
@@ -12,7 +13,7 @@ namespace velamap {
 // length and takes from each the frame with most markers, where blurred markers count less. Indices
 // ascend.
 std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& images,
-                                       int max_num_frames);
+                                       std::size_t max_num_frames);
 
 // Selection of registered frames: greedily takes the frame that adds most to the sum of the
 // log-determinants of the information matrices of all marker centres, which accounts for parallax,

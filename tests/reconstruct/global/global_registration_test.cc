@@ -1,6 +1,7 @@
 #include "reconstruct/global/global_registration.h"
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -185,6 +186,13 @@ TEST(GlobalRegistration, OfALongVideoTheBestFramesAreKept) {
   }
   EXPECT_LT(first, 8);  // the ends give the parallax
   EXPECT_GT(last, 52);
+}
+
+TEST(GlobalRegistration, AnyNumberOfFramesMayBeAllowed) {
+  RegistrationOptions options;
+  options.global.max_num_frames = std::numeric_limits<int>::max();
+  const Registration registration = Register(MakeScene(SceneKind::kSail, 24, true), options);
+  EXPECT_EQ(registration.NumRegistered(), 24);
 }
 
 TEST(GlobalRegistration, DataThatCannotBeRegisteredAreRefused) {
