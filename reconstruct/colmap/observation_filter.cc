@@ -137,11 +137,10 @@ int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
 bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed) {
   std::map<int, int> num_corners;
   for (const auto& [point3D_id, point] : model->points3D) {
-    if (IsCornerPoint3DId(point3D_id)) ++num_corners[CornerFromPoint3DId(point3D_id).marker_id];
+    ++num_corners[CornerFromPoint3DId(point3D_id).marker_id];
   }
   const auto is_unproven = [&](const ObservationError& error) {
-    return IsCornerPoint3DId(error.point3D_id) &&
-           num_corners[CornerFromPoint3DId(error.point3D_id).marker_id] < kNumCorners &&
+    return num_corners[CornerFromPoint3DId(error.point3D_id).marker_id] < kNumCorners &&
            model->points3D.at(error.point3D_id).track.size() <= 2;
   };
   std::vector<ObservationError> unproven = ComputeReprojectionErrors(*model);

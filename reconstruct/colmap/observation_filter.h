@@ -23,7 +23,8 @@ int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
 
 // Removes all observations of corners that at most two images see and whose marker has lost a
 // corner. Two images cannot show that one of them is wrong, but outliers among the other corners of
-// the marker make it likely. Appends to `removed`; returns whether any were removed.
+// the marker make it likely. All points of the model are corners. Appends to `removed`; returns
+// whether any observations were removed.
 bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed);
 
 // Returns the observation to the model, if its image and its point are still there, the point lies
