@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/camera/turned_camera.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -34,7 +35,7 @@ void TurnImage(const Camera& camera, int quarter_turns, ModelImage* image) {
     point.x_in_image_px = TurnInImage(camera, quarter_turns, point.x_in_image_px);
   }
   const Eigen::Quaterniond turn(
-      Eigen::AngleAxisd(quarter_turns * std::acos(0.0), Eigen::Vector3d::UnitZ()));
+      Eigen::AngleAxisd(quarter_turns * kPi / 2, Eigen::Vector3d::UnitZ()));
   image->cam_from_world.rotation = (turn * image->cam_from_world.rotation).normalized();
   image->cam_from_world.translation = turn * image->cam_from_world.translation;
 }
