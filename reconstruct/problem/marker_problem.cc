@@ -12,6 +12,7 @@
 #include "importer/base/log.h"
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
+#include "reconstruct/problem/marker_cost_functions.h"
 #include "reconstruct/problem/prior_cost_functions.h"
 #include "reconstruct/problem/scale_bar.h"
 #include "reconstruct/solve/schur_complement.h"

@@ -13,7 +13,6 @@
 #include "importer/layout/layout.h"
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
-#include "reconstruct/problem/marker_cost_functions.h"
 #include "reconstruct/problem/marker_state.h"
 
 namespace velamap {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
