@@ -1,4 +1,5 @@
-// The steps of a marker-aware bundle adjustment, which AdjustWithMarkers calls in this order.
+// The steps of a marker-aware bundle adjustment, in the order in which marker_adjustment.h and
+// camera_adjustment.h take them.
 
 #pragma once
 
@@ -16,7 +17,7 @@ namespace velamap {
 
 class MarkerAdjuster {
  public:
-  // All arguments but the model must outlive the adjuster.
+  // `layout` and `corner_errors` must outlive the adjuster.
   MarkerAdjuster(const MarkerAdjustmentOptions& options, const Layout& layout,
                  const CornerErrors& corner_errors, Model model);
 

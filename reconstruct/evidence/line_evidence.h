@@ -1,6 +1,6 @@
 // Finds the markers that are not on their line of the layout: those that the cheapest path along
-// the line leaves out. A path costs the distance from each kept marker to the
-// next one, plus a price, in steps of the line, for each marker that is left out.
+// the line leaves out. A path costs the distance from each kept marker to the next one, plus a
+// price, in steps of the line, for each marker that is left out.
 //
 // A step is the distance between neighbours. However cloth is bent, folded or rolled up, neighbours
 // are never farther apart than along the cloth. The detour over a marker between two others is

@@ -20,7 +20,7 @@ namespace velamap {
 // Centre (index 0) and corners 1..4 of one marker in a frame named by the variable, m.
 using MarkerPoints = std::array<Eigen::Vector3d, kNumCorners + 1>;
 
-// Mean points of all markers by marker id, in the shape frame, m.
+// Points of all markers by marker id, in the shape frame, m.
 using ShapePoints = std::map<int, MarkerPoints>;
 
 MarkerPoints Transform(const Rigid3& b_from_a, const MarkerPoints& x_in_a);

@@ -13,7 +13,8 @@ namespace velamap {
 
 enum class ModelFormat { kBinary, kText, kBinaryAndText };
 
-// Names of all files that a model folder may hold, for CheckReplaceableFolder().
+// Names of all files that a model folder may hold: where the folder is an input, no output may
+// replace one of them (workflows/options/path_check.h).
 const std::set<std::string>& ModelFileNames();
 
 // Reads the folder; prefers the binary format where both are there, as COLMAP does. Throws

@@ -51,7 +51,7 @@ struct Registration {
   std::string central_image_name;
   std::string central_reason;           // why this frame is the central one
   std::vector<RegisteredFrame> frames;  // all images with markers, in canonical order
-  ShapePoints shape;                    // mean points by marker id
+  ShapePoints shape;                    // kThesis: means over the frames
   std::vector<DroppedMarker> dropped_markers;
   // Parameters that were adapted to the data, and doubts about the result, one line each.
   std::vector<std::string> notes;
