@@ -52,16 +52,16 @@ struct Start {
   Cameras cameras;
 };
 
-Cameras Scaled(const Cameras& cameras, double factor) {
-  Cameras scaled = cameras;
-  for (auto& [camera_id, camera] : scaled) {
-    const std::size_t num_focal = NumFocalLengths(camera.model);
-    for (std::size_t i = 0; i < num_focal; ++i) {
-      camera.params[i] = std::clamp(camera.params[i] * factor, kMinFocal * LargerSide(camera),
-                                    kMaxFocal * LargerSide(camera));
-    }
+void ScaleFocalLength(double factor, Camera* camera) {
+  for (std::size_t i = 0; i < NumFocalLengths(camera->model); ++i) {
+    camera->params[i] = std::clamp(camera->params[i] * factor, kMinFocal * LargerSide(*camera),
+                                   kMaxFocal * LargerSide(*camera));
   }
-  return scaled;
+}
+
+Cameras WithFocalTimes(double factor, Cameras cameras) {
+  for (auto& [camera_id, camera] : cameras) ScaleFocalLength(factor, &camera);
+  return cameras;
 }
 
 // Maps each camera to the camera of the upright images if its guess is that camera rotated, else to
@@ -121,9 +121,8 @@ Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const C
   for (auto& [camera_id, camera] : lens.cameras) {
     if (!(information > 0)) break;
     if (log_sigmas[camera_id] < kVagueLogSigma) continue;
-    const double factor =
-        std::exp(sum / information) * LargerSide(camera) / MeanFocalLength(camera);
-    camera = Scaled({{camera_id, camera}}, factor).at(camera_id);
+    ScaleFocalLength(std::exp(sum / information) * LargerSide(camera) / MeanFocalLength(camera),
+                     &camera);
   }
   if (information > 0) lens.log_sigma = 1.0 / std::sqrt(information);
   for (const auto& [camera_id, upright_id] : upright) {
@@ -152,8 +151,8 @@ std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Camera
   starts.push_back({"the database's", guesses});
   if (straight.log_sigma > kVagueLogSigma) {
     const double step = std::min(kMaxStep, 2.0 * straight.log_sigma);
-    starts.push_back({"longer", Scaled(straight.cameras, std::exp(step))});
-    starts.push_back({"shorter", Scaled(straight.cameras, std::exp(-step))});
+    starts.push_back({"longer", WithFocalTimes(std::exp(step), straight.cameras)});
+    starts.push_back({"shorter", WithFocalTimes(std::exp(-step), straight.cameras)});
   }
   return starts;
 }
