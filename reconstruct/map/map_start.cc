@@ -102,18 +102,17 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
   const auto [first, second] = pair;
   MapSolution from_first = EmptySolution(problem);
   from_first.cam_from_shape[static_cast<std::size_t>(first)] = Rigid3{};
-  std::set<int> in_first, in_both;
   for (const int idx : problem.Frame(first).observation_idxs) {
     const MapObservation& observation = problem.Observation(idx);
-    in_first.insert(observation.marker_idx);
     for (const Rigid3& cam_from_marker : observation.cam_from_marker) {
       from_first.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].push_back(
           {1.0, cam_from_marker.rotation, cam_from_marker.translation});
     }
   }
+  std::set<int> in_both;
   for (const int idx : problem.Frame(second).observation_idxs) {
     const int marker_idx = problem.Observation(idx).marker_idx;
-    if (in_first.count(marker_idx) > 0) in_both.insert(marker_idx);
+    if (!from_first.Places(marker_idx).empty()) in_both.insert(marker_idx);
   }
   MapSolution best = EmptySolution(problem);
   double most_explained = 0.0;
