@@ -53,43 +53,38 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
 // options ask.
 void CheckStructure(const BundleAdjustmentOptions& options, const Model& before, const Model& after,
                     const std::string& log_path) {
+  const auto fail = [&log_path](const std::string& what) { ThrowImplausible(what, log_path); };
   const bool refines_cameras =
       options.refine_focal_length || options.refine_principal_point || options.refine_extra_params;
   if (after.images.size() != before.images.size()) {
-    ThrowImplausible(
-        fmt::format("{} of {} images came back", after.images.size(), before.images.size()),
-        log_path);
+    fail(fmt::format("{} of {} images came back", after.images.size(), before.images.size()));
   }
   if (after.points3D.size() != before.points3D.size()) {
-    ThrowImplausible(
-        fmt::format("{} of {} points came back", after.points3D.size(), before.points3D.size()),
-        log_path);
+    fail(fmt::format("{} of {} points came back", after.points3D.size(), before.points3D.size()));
   }
   for (const ModelImage& image : before.images) {
     if (after.FindImage(image.image_id) == nullptr) {
-      ThrowImplausible(fmt::format("image {} is lost", image.image_id), log_path);
+      fail(fmt::format("image {} is lost", image.image_id));
     }
   }
   for (const auto& [point3D_id, point] : before.points3D) {
     const auto it = after.points3D.find(point3D_id);
     if (it == after.points3D.end() || it->second.track.size() != point.track.size()) {
-      ThrowImplausible(fmt::format("point {} or some of its observations are lost", point3D_id),
-                       log_path);
+      fail(fmt::format("point {} or some of its observations are lost", point3D_id));
     }
   }
   for (const auto& [camera_id, camera] : before.cameras) {
     const auto it = after.cameras.find(camera_id);
     if (it == after.cameras.end() || it->second.model != camera.model) {
-      ThrowImplausible(fmt::format("camera {} is lost", camera_id), log_path);
+      fail(fmt::format("camera {} is lost", camera_id));
     }
     if (refines_cameras ? !(MeanFocalLength(it->second) > 0) : !(it->second == camera)) {
-      ThrowImplausible(fmt::format("camera {} has implausible parameters", camera_id), log_path);
+      fail(fmt::format("camera {} has implausible parameters", camera_id));
     }
     if (refines_cameras && HasMonotonicDistortion(camera) && !HasMonotonicDistortion(it->second)) {
       if (options.refine_extra_params) ThrowFoldedDistortion(camera_id);
-      ThrowImplausible(
-          fmt::format("the refined distortion of camera {} folds over inside the image", camera_id),
-          log_path);
+      fail(fmt::format("the refined distortion of camera {} folds over inside the image",
+                       camera_id));
     }
   }
 }
