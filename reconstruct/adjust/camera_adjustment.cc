@@ -61,26 +61,6 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
   return adjustment;
 }
 
-}  // namespace
-
-CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
-                               const CornerErrors& corner_errors, const Model& model) {
-  MarkerAdjustmentOptions free = options;
-  free.find_camera = true;
-  free.Check();
-  CheckModel(model);
-  Model tied = model;
-  TurnedCameras turned = TieTurnedCameras(&tied);
-  CameraAdjustment best = AdjustTied(free, layout, corner_errors, tied, turned);
-  if (!turned.Any()) return best;
-  TurnTheOtherWay(&turned, &tied);
-  CameraAdjustment other = AdjustTied(free, layout, corner_errors, std::move(tied), turned);
-  if (other.explained > best.explained) best = std::move(other);
-  return best;
-}
-
-namespace {
-
 // Throws DataError if the wanted model fails and another one is far better, which explains why.
 void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraModel wanted,
                             const DataError& failure) {
@@ -104,6 +84,22 @@ void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraM
 }
 
 }  // namespace
+
+CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
+                               const CornerErrors& corner_errors, const Model& model) {
+  MarkerAdjustmentOptions free = options;
+  free.find_camera = true;
+  free.Check();
+  CheckModel(model);
+  Model tied = model;
+  TurnedCameras turned = TieTurnedCameras(&tied);
+  CameraAdjustment best = AdjustTied(free, layout, corner_errors, tied, turned);
+  if (!turned.Any()) return best;
+  TurnTheOtherWay(&turned, &tied);
+  CameraAdjustment other = AdjustTied(free, layout, corner_errors, std::move(tied), turned);
+  if (other.explained > best.explained) best = std::move(other);
+  return best;
+}
 
 CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& options,
                                            const Layout& layout, const CornerErrors& corner_errors,
