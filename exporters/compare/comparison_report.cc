@@ -80,14 +80,6 @@ Metrics MarkerRow(const MarkerDeviation& marker, bool is_against_surface) {
   return row;
 }
 
-std::vector<int> BesideSurface(const ShapeDeviation& deviation) {
-  std::vector<int> ids;
-  for (const MarkerDeviation& marker : deviation.markers) {
-    if (!marker.is_over_surface) ids.push_back(marker.marker_id);
-  }
-  return ids;
-}
-
 void DropRoundingErrors(double* value) {
   constexpr double kLargest = 1e-9;
   if (std::abs(*value) < kLargest) *value = 0.0;
@@ -122,7 +114,7 @@ void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
   if (is_against_surface) {
     metrics.push_back({"num_beyond_edge", deviation.num_beyond_edge});
     metrics.push_back({"num_beside_surface", deviation.num_beside});
-    metrics.push_back({"beside_surface_ids", BesideSurface(deviation)});
+    metrics.push_back({"beside_surface_ids", MarkersBeside(deviation)});
   } else {
     metrics.push_back({"only_in_shape_ids", deviation.only_in_shape});
     metrics.push_back({"only_in_reference_ids", deviation.only_in_reference});
