@@ -72,11 +72,8 @@ Metrics MarkerRow(const MarkerDeviation& marker, bool is_against_surface) {
   }
   if (marker.difference_m) AddVector("difference", *marker.difference_m, &row);
   if (marker.difference_sigma_m) AddVector("difference_sigma", *marker.difference_sigma_m, &row);
-  for (const auto& [key, value] : {std::pair{"x_m", marker.x_in_reference_m.x()},
-                                   std::pair{"y_m", marker.x_in_reference_m.y()},
-                                   std::pair{"z_m", marker.x_in_reference_m.z()}}) {
-    row.push_back({key, value});
-  }
+  const Eigen::Vector3d& x_m = marker.x_in_reference_m;
+  row.insert(row.end(), {{"x_m", x_m.x()}, {"y_m", x_m.y()}, {"z_m", x_m.z()}});
   return row;
 }
 
