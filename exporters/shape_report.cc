@@ -59,9 +59,7 @@ void AddMetrics(const SailShape& sail, MetricsReport* report) {
   MetricTable table{"surfaces", true, {}};
   for (const SailSurface& surface : sail.surfaces) {
     table.rows.push_back({{"part", surface.part}, {"area_m2", surface.area_m2}});
-    if (surface.rms_sigma_m) {
-      table.rows.back().push_back({"surface_sigma_mm", kMmPerM * *surface.rms_sigma_m});
-    }
+    AddSigma("surface_sigma_mm", surface.rms_sigma_m, &table.rows.back(), kMmPerM);
     table.rows.back().push_back({"distance_mm", Scaled(kMmPerM, surface.fit.distance_m)});
   }
   report->tables.push_back(std::move(table));

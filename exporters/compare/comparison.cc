@@ -56,20 +56,21 @@ Comparison WithoutSurfaces(const std::string& name, ShapeDeviation deviation,
 }  // namespace
 
 Comparison Compare(const std::string& name, const UncertainShape& shape,
-                   const UncertainShape& reference, const Layout& layout,
+                   const SeriesReference& reference, const Layout& layout,
                    const ComparisonOptions& options) {
+  const auto& [uncertain, surfaces] = reference;
   Comparison comparison = WithoutSurfaces(
-      name, CompareWithShape(shape, reference, layout, options.alignment, options.part), layout);
+      name, CompareWithShape(shape, uncertain, layout, options.alignment, options.part), layout);
   if (!comparison.has_layout) return comparison;
   const Alignment& alignment = comparison.deviation.alignment;
-  const ShapeSurfaces of_shape(comparison.deviation.aligned_shape), of_reference(reference.shape);
-  comparison.surfaces = CompareSurfaces(of_shape, of_reference, layout, options.part, options.edge);
+  const ShapeSurfaces of_shape(comparison.deviation.aligned_shape);
+  comparison.surfaces = CompareSurfaces(of_shape, surfaces, layout, options.part, options.edge);
   if (options.with_deflections) {
-    comparison.deflections = ComputeDeflections(alignment, {of_shape, shape.covariance},
-                                                {of_reference, reference.covariance}, layout,
-                                                options.grid, options.part);
+    comparison.deflections =
+        ComputeDeflections(alignment, {of_shape, shape.covariance},
+                           {surfaces, uncertain.covariance}, layout, options.grid, options.part);
   }
-  comparison.sections = CompareSections(shape, reference, alignment, layout, options.part);
+  comparison.sections = CompareSections(shape, uncertain, alignment, layout, options.part);
   return comparison;
 }
 

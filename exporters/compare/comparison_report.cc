@@ -72,20 +72,9 @@ Metrics MarkerRow(const MarkerDeviation& marker, bool is_against_surface) {
   }
   if (marker.difference_m) AddVector("difference", *marker.difference_m, &row);
   if (marker.difference_sigma_m) AddVector("difference_sigma", *marker.difference_sigma_m, &row);
-  for (const auto& [key, value] : {std::pair{"x_m", marker.x_in_reference_m.x()},
-                                   std::pair{"y_m", marker.x_in_reference_m.y()},
-                                   std::pair{"z_m", marker.x_in_reference_m.z()}}) {
-    row.push_back({key, value});
-  }
+  const Eigen::Vector3d& x_m = marker.x_in_reference_m;
+  row.insert(row.end(), {{"x_m", x_m.x()}, {"y_m", x_m.y()}, {"z_m", x_m.z()}});
   return row;
-}
-
-std::vector<int> BesideSurface(const ShapeDeviation& deviation) {
-  std::vector<int> ids;
-  for (const MarkerDeviation& marker : deviation.markers) {
-    if (!marker.is_over_surface) ids.push_back(marker.marker_id);
-  }
-  return ids;
 }
 
 void DropRoundingErrors(double* value) {
@@ -122,7 +111,7 @@ void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
   if (is_against_surface) {
     metrics.push_back({"num_beyond_edge", deviation.num_beyond_edge});
     metrics.push_back({"num_beside_surface", deviation.num_beside});
-    metrics.push_back({"beside_surface_ids", BesideSurface(deviation)});
+    metrics.push_back({"beside_surface_ids", MarkersBeside(deviation)});
   } else {
     metrics.push_back({"only_in_shape_ids", deviation.only_in_shape});
     metrics.push_back({"only_in_reference_ids", deviation.only_in_reference});

@@ -5,7 +5,6 @@
 
 #include <map>
 #include <optional>
-#include <vector>
 
 #include <Eigen/Core>
 

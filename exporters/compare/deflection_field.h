@@ -18,7 +18,6 @@
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
-#include "exporters/shape/marker_shape.h"
 #include "exporters/surface/shape_surfaces.h"
 #include "importer/layout/layout.h"
 

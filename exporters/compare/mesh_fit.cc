@@ -95,12 +95,7 @@ Alignment DescribeFit(const std::vector<SurfacePose>& fits, const Corners& corne
 
 Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
                       const AlignmentOptions& options) {
-  if (options.method == AlignmentMethod::kNone) {
-    Alignment alignment;
-    alignment.description = "none; both frames are taken to be the same";
-    alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
-    return alignment;
-  }
+  if (options.method == AlignmentMethod::kNone) return NoAlignment();
   if (options.method != AlignmentMethod::kAuto && options.method != AlignmentMethod::kBestFit) {
     throw InputError(
         fmt::format("--align {}: the reference is a surface without markers; give best_fit or none",

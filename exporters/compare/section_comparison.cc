@@ -129,6 +129,7 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
       CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout, wanted_part);
   comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
                                    shape, beyond, layout, wanted_part);
+  std::set<std::string> parts_without_twist;
   for (const Section& section : comparison.of_shape.sections) {
     const Section* other = FindSection(comparison.of_reference, section.part, section.name);
     if (other == nullptr) continue;
@@ -139,21 +140,17 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
       continue;
     }
     const std::string missing = MissingEndsText(section);
-    if (missing.empty()) continue;
-    comparison.notes.push_back(fmt::format("{} {}: compared over the markers of both, {}",
-                                           section.part, section.name, missing));
-  }
-  AddNotes(comparison.of_shape, "shape", &comparison.notes);
-  AddNotes(comparison.of_reference, "reference", &comparison.notes);
-  std::set<std::string> parts_without_twist;
-  for (const Section& section : comparison.of_shape.sections) {
-    const Section* other = FindSection(comparison.of_reference, section.part, section.name);
-    if (other == nullptr || !HaveSameEnds(section, *other)) continue;
+    if (!missing.empty()) {
+      comparison.notes.push_back(fmt::format("{} {}: compared over the markers of both, {}",
+                                             section.part, section.name, missing));
+    }
     const bool with_twist = TwistReference(comparison.of_shape, section.part) ==
                             TwistReference(comparison.of_reference, section.part);
     if (!with_twist) parts_without_twist.insert(section.part);
     AddDifferences(section, *other, with_twist, is_exact, &comparison.differences);
   }
+  AddNotes(comparison.of_shape, "shape", &comparison.notes);
+  AddNotes(comparison.of_reference, "reference", &comparison.notes);
   for (const std::string& part : parts_without_twist) {
     comparison.notes.push_back(
         fmt::format("twists of {} cannot be compared: they have different references", part));

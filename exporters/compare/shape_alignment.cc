@@ -143,17 +143,20 @@ std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& w
   return *ids;
 }
 
+Alignment NoAlignment() {
+  Alignment alignment;
+  alignment.description = "none; both frames are taken to be the same";
+  alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
+  return alignment;
+}
+
 Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
                       const AlignmentOptions& options) {
-  Alignment alignment;
+  if (options.method == AlignmentMethod::kNone) return NoAlignment();
   const Choice choice = Choose(shape, reference, layout, options);
+  Alignment alignment;
   alignment.method = choice.method;
   if (!choice.note.empty()) alignment.notes.push_back(choice.note);
-  if (choice.method == AlignmentMethod::kNone) {
-    alignment.description = "none; both frames are taken to be the same";
-    alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
-    return alignment;
-  }
   const CommonCorners corners = FindCommonCorners(shape, reference, choice.marker_ids);
   CheckCorners(corners, choice.marker_ids.empty() ? "" : " among those to align by");
   alignment.description = Describe(choice, layout, corners);

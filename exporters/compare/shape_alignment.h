@@ -56,6 +56,9 @@ struct Alignment {
   Statistics residual_m;                     // distances of the used corners from their targets
 };
 
+// The alignment of kNone, to a shape as to a surface.
+Alignment NoAlignment();
+
 // Aligns a shape with a shape by least squares over their common corners. Throws DataError with
 // fewer than three common corners or if they lie on one line, and InputError for kReferencePart
 // without a reference part in the layout and for kMarkers without ids or with an id that one shape

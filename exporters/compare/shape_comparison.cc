@@ -138,20 +138,34 @@ double ReachOf(const MeshFoot& foot, const Eigen::Vector3d& x_m,
   return reach_m;
 }
 
+// How far the marker nearest to the surface lies beside it, m; 0 without markers.
+double LeastBeside(const std::vector<MarkerDeviation>& markers) {
+  const auto nearest =
+      std::min_element(markers.begin(), markers.end(),
+                       [](const auto& a, const auto& b) { return a.beside_m < b.beside_m; });
+  return nearest == markers.end() ? 0.0 : nearest->beside_m;
+}
+
 // Diagonal of the bounding box of all corners, m.
 double DiagonalOf(const MarkerShape& shape) {
-  std::optional<Eigen::Vector3d> low, high;
+  Eigen::AlignedBox3d box;
   for (const ShapeMarker& marker : shape.markers) {
     for (const auto& x : marker.x_in_shape_m) {
-      if (!x) continue;
-      low = low ? low->cwiseMin(*x) : *x;
-      high = high ? high->cwiseMax(*x) : *x;
+      if (x) box.extend(*x);
     }
   }
-  return low ? (*high - *low).norm() : 0.0;
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
 }  // namespace
+
+std::vector<int> MarkersBeside(const ShapeDeviation& deviation) {
+  std::vector<int> ids;
+  for (const MarkerDeviation& marker : deviation.markers) {
+    if (!marker.is_over_surface) ids.push_back(marker.marker_id);
+  }
+  return ids;
+}
 
 MarkerShape MarkersOnPart(const MarkerShape& shape, const Layout& layout, const std::string& part) {
   MarkerShape kept =
@@ -246,13 +260,7 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
     throw DataError(fmt::format(
         "none of the {} whole markers lies over the surface of the reference (at least {:.0f} mm "
         "beside it); align them (--align best_fit) or give the surface of the same part",
-        deviation.markers.size(),
-        kMmPerM * (deviation.markers.empty()
-                       ? 0.0
-                       : std::min_element(
-                             deviation.markers.begin(), deviation.markers.end(),
-                             [](const auto& a, const auto& b) { return a.beside_m < b.beside_m; })
-                             ->beside_m)));
+        deviation.markers.size(), kMmPerM * LeastBeside(deviation.markers)));
   }
   if (deviation.alignment.method == AlignmentMethod::kBestFit) {
     deviation.doubt =

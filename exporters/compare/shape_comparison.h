@@ -84,6 +84,9 @@ struct ShapeDeviation {
   std::vector<int> only_in_reference;
 };
 
+// The ids of the markers beside the surface.
+std::vector<int> MarkersBeside(const ShapeDeviation& deviation);
+
 // Selects the markers of a part, according to the layout or, without one, to the shape. Throws
 // InputError with the existing parts if there are none.
 MarkerShape MarkersOnPart(const MarkerShape& shape, const Layout& layout, const std::string& part);

@@ -39,15 +39,13 @@ std::vector<std::string> Comments(const std::string& content, double limit_m) {
 }
 
 void AddPosition(PlyElement<Vertex>* vertices) {
-  vertices->Add("x", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.x(); });
-  vertices->Add("y", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.y(); });
-  vertices->Add("z", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.z(); });
+  vertices->AddVector({"x", "y", "z"}, PlyType::kDouble,
+                      [](const Vertex& v) { return v.x_in_reference_m; });
 }
 
 void AddColorAndDistance(PlyElement<Vertex>* vertices) {
-  vertices->Add("red", PlyType::kUchar, [](const Vertex& v) { return v.color[0]; });
-  vertices->Add("green", PlyType::kUchar, [](const Vertex& v) { return v.color[1]; });
-  vertices->Add("blue", PlyType::kUchar, [](const Vertex& v) { return v.color[2]; });
+  vertices->AddVector({"red", "green", "blue"}, PlyType::kUchar,
+                      [](const Vertex& v) { return v.color; });
   vertices->Add("distance", PlyType::kFloat, [](const Vertex& v) { return v.distance_m; });
 }
 
@@ -77,9 +75,7 @@ void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> c
   const double limit_m = color_limit_m.value_or(deviation.distance_m.MaxAbs());
   PlyElement<Vertex> vertices{"vertex", {}, {}};
   AddPosition(&vertices);
-  vertices.Add("nx", PlyType::kFloat, [](const Vertex& v) { return v.normal.x(); });
-  vertices.Add("ny", PlyType::kFloat, [](const Vertex& v) { return v.normal.y(); });
-  vertices.Add("nz", PlyType::kFloat, [](const Vertex& v) { return v.normal.z(); });
+  vertices.AddVector({"nx", "ny", "nz"}, PlyType::kFloat, [](const Vertex& v) { return v.normal; });
   AddColorAndDistance(&vertices);
   if (std::all_of(deviation.markers.begin(), deviation.markers.end(),
                   [](const auto& marker) { return marker.sigma_m.has_value(); })) {

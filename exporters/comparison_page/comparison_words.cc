@@ -236,10 +236,7 @@ class Items {
                       "measured along its normal there",
                       deviation_.num_beyond_edge));
     }
-    std::vector<int> beside;
-    for (const MarkerDeviation& marker : deviation_.markers) {
-      if (!marker.is_over_surface) beside.push_back(marker.marker_id);
-    }
+    const std::vector<int> beside = MarkersBeside(deviation_);
     if (beside.empty()) return;
     Add(fmt::format("beside the design, and without a distance: marker{} {}",
                     beside.size() == 1 ? "" : "s", fmt::join(beside, " ")));

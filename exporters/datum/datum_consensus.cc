@@ -10,16 +10,6 @@
 namespace velamap {
 namespace {
 
-constexpr int kNumPoseParameters = 6;
-
-int NumCoordinates(const DatumPoints& points, const PointSet& set) {
-  int count = 0;
-  for (const std::size_t i : set) {
-    for (const auto& known : points.points[i].known_m) count += known.has_value();
-  }
-  return count;
-}
-
 // Whether the set determines a pose. `known_from_centred` is an approximation of it.
 bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& known_from_centred) {
   return NumCoordinates(points, set) >= kNumPoseParameters &&

@@ -4,6 +4,19 @@
 
 namespace velamap {
 
+std::optional<Eigen::Vector3d> DatumPoint::KnownPosition() const {
+  if (!known_m[0] || !known_m[1] || !known_m[2]) return std::nullopt;
+  return Eigen::Vector3d(*known_m[0], *known_m[1], *known_m[2]);
+}
+
+int NumCoordinates(const DatumPoints& points, const PointSet& set) {
+  int count = 0;
+  for (const std::size_t i : set) {
+    for (const auto& known : points.points[i].known_m) count += known.has_value();
+  }
+  return count;
+}
+
 DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
                          const Rigid3& known_from_centred) {
   const auto max_rows = static_cast<Eigen::Index>(3 * set.size());

@@ -20,6 +20,9 @@ struct DatumPoint {
   Eigen::Vector3d x_m;  // in the shape frame, relative to DatumPoints::center_in_shape_m
   std::array<std::optional<double>, 3> known_m;  // in the known frame
   double sigma_m = 0.0;                          // of each known coordinate
+
+  // Nothing unless all three coordinates are known.
+  std::optional<Eigen::Vector3d> KnownPosition() const;
 };
 
 struct DatumPoints {
@@ -32,6 +35,11 @@ struct DatumPoints {
 
 // Ascending indices into DatumPoints::points.
 using PointSet = std::vector<std::size_t>;
+
+constexpr int kNumPoseParameters = 6;
+
+// The number of known coordinates, each of which gives an equation.
+int NumCoordinates(const DatumPoints& points, const PointSet& set);
 
 // The equations of a set of points at a pose, in the order of the points and of x, y, z.
 struct DatumEquations {

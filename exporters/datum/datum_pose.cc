@@ -77,10 +77,10 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
   std::vector<Eigen::Vector3d> x_m, known_m;
   std::vector<double> weights;
   for (const std::size_t i : set) {
-    const auto& known = points.points[i].known_m;
-    if (!known[0] || !known[1] || !known[2]) continue;
+    const std::optional<Eigen::Vector3d> position_m = points.points[i].KnownPosition();
+    if (!position_m) continue;
     x_m.push_back(points.points[i].x_m);
-    known_m.emplace_back(*known[0], *known[1], *known[2]);
+    known_m.push_back(*position_m);
     weights.push_back(std::pow(points.points[i].sigma_m, -2));
   }
   if (!HasSpread(x_m)) return std::nullopt;

@@ -62,15 +62,10 @@ KnownPointsInShape CollectKnownPointsInShape(const MarkerShape& shape,
 // by the distance in the shape.
 std::optional<double> MedianGrowth(const DatumPoints& points, const PointSet& set) {
   std::vector<double> ratios;
-  const auto position = [](const DatumPoint& point) -> std::optional<Eigen::Vector3d> {
-    const auto& known = point.known_m;
-    if (!known[0] || !known[1] || !known[2]) return std::nullopt;
-    return Eigen::Vector3d(*known[0], *known[1], *known[2]);
-  };
   for (std::size_t a = 0; a < set.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const DatumPoint &first = points.points[set[a]], &second = points.points[set[b]];
-      const auto known1 = position(first), known2 = position(second);
+      const auto known1 = first.KnownPosition(), known2 = second.KnownPosition();
       const double distance_m = (first.x_m - second.x_m).norm();
       if (known1 && known2 && distance_m > 0) {
         ratios.push_back((*known1 - *known2).norm() / distance_m);
@@ -253,11 +248,9 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   if (fit.scale_change && covariance == nullptr) {
     fit.scale_change->sigma = std::hypot(fit.scale_change->sigma, scale_sigma);
   }
-  const auto redundancy =
-      Linearize(points, agreement->used, known_from_centred).residuals_m.size() - 6;
+  const int redundancy = NumCoordinates(points, agreement->used) - kNumPoseParameters;
   if (redundancy > 0) {
-    fit.residual_in_sigmas =
-        std::sqrt(agreement->pose.squared_sigmas / static_cast<double>(redundancy));
+    fit.residual_in_sigmas = std::sqrt(agreement->pose.squared_sigmas / redundancy);
   }
   return fit;
 }

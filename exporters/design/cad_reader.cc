@@ -65,18 +65,10 @@ void CheckWholeIges(const fs::path& path) {
   }
 }
 
-TopoDS_Shape ReadStep(const fs::path& path) {
-  CheckWholeStep(path);
-  STEPControl_Reader reader;
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "STEP");
-  reader.TransferRoots();
-  return reader.OneShape();
-}
-
-TopoDS_Shape ReadIges(const fs::path& path) {
-  CheckWholeIges(path);
-  IGESControl_Reader reader;
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "IGES");
+template <typename Reader>
+TopoDS_Shape ReadShape(const fs::path& path, const char* format) {
+  Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, format);
   reader.TransferRoots();
   return reader.OneShape();
 }
@@ -113,9 +105,12 @@ TriangleMesh ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);
   const std::string extension = LowerExtension(path);
   const bool is_step = extension == ".step" || extension == ".stp";
+  const char* format = is_step ? "STEP" : "IGES";
+  is_step ? CheckWholeStep(path) : CheckWholeIges(path);
   const CadSession session;
   try {
-    const TopoDS_Shape shape = is_step ? ReadStep(path) : ReadIges(path);
+    const TopoDS_Shape shape = is_step ? ReadShape<STEPControl_Reader>(path, format)
+                                       : ReadShape<IGESControl_Reader>(path, format);
     if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
       throw InputError(fmt::format("{}: has no faces; export the surface, not its curves or mesh",
                                    path.string()));
@@ -124,7 +119,7 @@ TriangleMesh ReadCad(const fs::path& path, double chord_deviation_mm) {
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();
   } catch (const Standard_Failure&) {
-    ThrowUnreadable(path, is_step ? "STEP" : "IGES");
+    ThrowUnreadable(path, format);
   }
 }
 

@@ -126,24 +126,24 @@ std::vector<int> Weld(const std::vector<Eigen::Vector3d>& vertices_m, const Eige
 }
 
 MeshMoments MomentsOf(const Triangles& triangles) {
+  const auto area_of = [](const Triple& x) {
+    return 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  };
   MeshMoments moments;
-  double sum = 0.0;
-  for (int pass = 0; pass < 2; ++pass) {
-    if (pass == 1) moments.mean_m /= sum;
-    for (int i = 0; i < triangles.Size(); ++i) {
-      const auto [a, b, c] = CornersOf(triangles, i);
-      const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
-      if (pass == 0) {
-        sum += area_m2;
-        moments.mean_m += area_m2 * (a + b + c) / 3;
-        continue;
-      }
-      // Exact for a triangle: the three midpoints of its sides, equally weighted.
-      const Triple midpoints = {(a + b) / 2, (b + c) / 2, (c + a) / 2};
-      for (const Eigen::Vector3d& x : midpoints) {
-        const Eigen::Vector3d from_mean = x - moments.mean_m;
-        moments.covariance_m2 += area_m2 / (3 * sum) * from_mean * from_mean.transpose();
-      }
+  double sum_m2 = 0.0;
+  for (int i = 0; i < triangles.Size(); ++i) {
+    const Triple x = CornersOf(triangles, i);
+    sum_m2 += area_of(x);
+    moments.mean_m += area_of(x) * (x[0] + x[1] + x[2]) / 3;
+  }
+  moments.mean_m /= sum_m2;
+  for (int i = 0; i < triangles.Size(); ++i) {
+    const Triple x = CornersOf(triangles, i);
+    // Exact for a triangle: the three midpoints of its sides, equally weighted.
+    const Triple midpoints = {(x[0] + x[1]) / 2, (x[1] + x[2]) / 2, (x[2] + x[0]) / 2};
+    for (const Eigen::Vector3d& midpoint : midpoints) {
+      const Eigen::Vector3d from_mean = midpoint - moments.mean_m;
+      moments.covariance_m2 += area_of(x) / (3 * sum_m2) * from_mean * from_mean.transpose();
     }
   }
   return moments;

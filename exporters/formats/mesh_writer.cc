@@ -37,11 +37,8 @@ void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostrea
   const auto add = [&vertices](const auto& values, PlyType type,
                                const std::vector<std::string>& names) {
     if (values.empty()) return;
-    for (std::size_t axis = 0; axis < names.size(); ++axis) {
-      vertices.Add(names[axis], type, [&values, axis](int i) {
-        return values[static_cast<std::size_t>(i)][static_cast<Eigen::Index>(axis)];
-      });
-    }
+    vertices.AddVector(names, type,
+                       [&values](int i) { return values[static_cast<std::size_t>(i)]; });
   };
   add(mesh.vertices_m, PlyType::kDouble, {"x", "y", "z"});
   add(mesh.normals, PlyType::kFloat, {"nx", "ny", "nz"});

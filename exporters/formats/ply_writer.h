@@ -2,7 +2,7 @@
 // body:
 //
 //   PlyElement<Eigen::Vector3d> vertices{"vertex", points_m, {}};
-//   vertices.Add("x", PlyType::kDouble, [](const Eigen::Vector3d& x) { return x.x(); });
+//   vertices.AddVector({"x", "y", "z"}, PlyType::kDouble, [](const auto& x_m) { return x_m; });
 //   WritePly(PlyFormat::kAscii, {"points, metres"}, out, vertices);
 
 #pragma once
@@ -37,6 +37,13 @@ struct PlyElement {
   void Add(const std::string& property, PlyType type, std::function<double(const Row&)> value) {
     properties.push_back(
         {property, type, [value = std::move(value)](const Row& row, int) { return value(row); }});
+  }
+  // One property for each component of a vector.
+  template <typename Function>
+  void AddVector(const std::vector<std::string>& names, PlyType type, const Function& vector) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      Add(names[i], type, [vector, i](const Row& row) -> double { return vector(row)[i]; });
+    }
   }
   // All rows have lists of the same size.
   void AddList(const std::string& property, PlyType type, int list_size,

@@ -130,15 +130,13 @@ void AddRow(const Row& row, const RecordReader& reader, bool is_new, ShapeMarker
 // Fills in the centre if all corners are known, as marker_shape.h requires. Returns what is wrong
 // with a centre of the file, or an empty text.
 std::string CompleteCenter(ShapeMarker* marker) {
-  std::optional<Eigen::Vector3d>& center = marker->x_in_shape_m[0];
-  const std::optional<Eigen::Vector3d> mean = MeanOfCorners(*marker);
-  if (!mean) return center ? "a centre without its four corners; add them or remove this row" : "";
+  const std::optional<Eigen::Vector3d>& center = marker->x_in_shape_m[0];
   if (!center) {
-    center = mean;
-    marker->num_frames[0] =
-        *std::min_element(marker->num_frames.begin() + 1, marker->num_frames.end());
+    SetCenter(marker);
     return "";
   }
+  const std::optional<Eigen::Vector3d> mean = MeanOfCorners(*marker);
+  if (!mean) return "a centre without its four corners; add them or remove this row";
   const double distance_m = (*center - *mean).norm();
   if (distance_m <= kCenterTolerance_m) return "";
   return fmt::format("the centre is {:.3g} m from the mean of its corners; remove this row",

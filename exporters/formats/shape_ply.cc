@@ -26,15 +26,11 @@ struct Face {
 
 PlyElement<Vertex> VertexElement() {
   PlyElement<Vertex> vertices{"vertex", {}, {}};
-  vertices.Add("x", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.x(); });
-  vertices.Add("y", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.y(); });
-  vertices.Add("z", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.z(); });
-  vertices.Add("nx", PlyType::kFloat, [](const Vertex& v) { return v.normal.x(); });
-  vertices.Add("ny", PlyType::kFloat, [](const Vertex& v) { return v.normal.y(); });
-  vertices.Add("nz", PlyType::kFloat, [](const Vertex& v) { return v.normal.z(); });
-  vertices.Add("red", PlyType::kUchar, [](const Vertex& v) { return v.color[0]; });
-  vertices.Add("green", PlyType::kUchar, [](const Vertex& v) { return v.color[1]; });
-  vertices.Add("blue", PlyType::kUchar, [](const Vertex& v) { return v.color[2]; });
+  vertices.AddVector({"x", "y", "z"}, PlyType::kDouble,
+                     [](const Vertex& v) { return v.x_in_shape_m; });
+  vertices.AddVector({"nx", "ny", "nz"}, PlyType::kFloat, [](const Vertex& v) { return v.normal; });
+  vertices.AddVector({"red", "green", "blue"}, PlyType::kUchar,
+                     [](const Vertex& v) { return v.color; });
   vertices.Add("marker_id", PlyType::kInt, [](const Vertex& v) { return v.marker_id; });
   vertices.Add("corner", PlyType::kInt, [](const Vertex& v) { return v.corner; });
   return vertices;

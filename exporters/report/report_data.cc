@@ -125,11 +125,12 @@ Json JsonOf(const std::vector<ReportLeftOut>& left_out) {
   return json;
 }
 
-void AddFigure(const std::string& name, const std::string& sigma_name,
+// Adds NAME_UNIT and, if it is known, NAME_sigma_UNIT.
+void AddFigure(const std::string& name, const std::string& unit,
                const std::optional<Estimate>& figure, Json* json) {
   if (!figure) return;
-  (*json)[name] = figure->value;
-  if (figure->sigma) (*json)[sigma_name] = *figure->sigma;
+  (*json)[name + '_' + unit] = figure->value;
+  if (figure->sigma) (*json)[name + "_sigma_" + unit] = *figure->sigma;
 }
 
 Json ProfileJson(const std::vector<Eigen::Vector2d>& profile_m) {
@@ -141,14 +142,14 @@ Json ProfileJson(const std::vector<Eigen::Vector2d>& profile_m) {
 Json JsonOf(const ReportSection& section) {
   Json json = {{"name", section.name}, {"height_m", section.height_m}};
   if (!section.note.empty()) json["note"] = section.note;
-  AddFigure("chord_m", "chord_sigma_m", section.chord_m, &json);
-  AddFigure("camber_percent", "camber_sigma_percent", section.camber_percent, &json);
-  AddFigure("draft_percent", "draft_sigma_percent", section.draft_percent, &json);
-  AddFigure("entry_deg", "entry_sigma_deg", section.entry_deg, &json);
-  AddFigure("exit_deg", "exit_sigma_deg", section.exit_deg, &json);
-  AddFigure("twist_deg", "twist_sigma_deg", section.twist_deg, &json);
-  AddFigure("leech_twist_deg", "leech_twist_sigma_deg", section.leech_twist_deg, &json);
-  AddFigure("girth_m", "girth_sigma_m", section.girth_m, &json);
+  AddFigure("chord", "m", section.chord_m, &json);
+  AddFigure("camber", "percent", section.camber_percent, &json);
+  AddFigure("draft", "percent", section.draft_percent, &json);
+  AddFigure("entry", "deg", section.entry_deg, &json);
+  AddFigure("exit", "deg", section.exit_deg, &json);
+  AddFigure("twist", "deg", section.twist_deg, &json);
+  AddFigure("leech_twist", "deg", section.leech_twist_deg, &json);
+  AddFigure("girth", "m", section.girth_m, &json);
   json["profile"] = ProfileJson(section.profile_m);
   if (!section.design_m.empty()) json["design"] = ProfileJson(section.design_m);
   if (!section.profile_in_shape_m.empty()) {
@@ -162,9 +163,9 @@ Json JsonOf(const ReportSection& section) {
 
 Json JsonOf(const RigNumbers& rig) {
   Json json = {{"part", rig.part}};
-  AddFigure("luff_bend_m", "luff_bend_sigma_m", rig.luff_bend_m, &json);
-  AddFigure("luff_sag_m", "luff_sag_sigma_m", rig.luff_sag_m, &json);
-  AddFigure("sheeting_angle_deg", "sheeting_angle_sigma_deg", rig.sheeting_angle_deg, &json);
+  AddFigure("luff_bend", "m", rig.luff_bend_m, &json);
+  AddFigure("luff_sag", "m", rig.luff_sag_m, &json);
+  AddFigure("sheeting_angle", "deg", rig.sheeting_angle_deg, &json);
   return json;
 }
 

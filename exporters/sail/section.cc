@@ -223,11 +223,9 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 std::string MissingEndsText(const Section& section) {
   const int luff = section.num_missing_at_luff, leech = section.num_missing_at_leech;
   if (luff + leech == 0) return "";
-  std::string text = fmt::format("{} marker{} missing at the ", luff > 0 ? luff : leech,
-                                 (luff > 0 ? luff : leech) == 1 ? "" : "s");
-  text += luff > 0 ? "luff" : "leech";
-  if (luff > 0 && leech > 0) text += fmt::format(" and {} at the leech", leech);
-  return text;
+  const auto [first, end] = luff > 0 ? std::pair{luff, "luff"} : std::pair{leech, "leech"};
+  return fmt::format("{} marker{} missing at the {}{}", first, first == 1 ? "" : "s", end,
+                     luff > 0 && leech > 0 ? fmt::format(" and {} at the leech", leech) : "");
 }
 
 OptionGroup DescribeOptions(SectionOptions* options) {

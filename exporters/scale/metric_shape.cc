@@ -1,6 +1,5 @@
 #include "exporters/scale/metric_shape.h"
 
-#include <algorithm>
 #include <set>
 
 #include "exporters/shape/shape_sigma.h"
@@ -13,13 +12,6 @@ int CountImages(const Point3D& point) {
   std::set<ImageId> image_ids;
   for (const TrackElement& element : point.track) image_ids.insert(element.image_id);
   return static_cast<int>(image_ids.size());
-}
-
-void AddCenter(ShapeMarker* marker) {
-  marker->x_in_shape_m[0] = MeanOfCorners(*marker);
-  if (!marker->IsWhole()) return;
-  marker->num_frames[0] =
-      *std::min_element(marker->num_frames.begin() + 1, marker->num_frames.end());
 }
 
 }  // namespace
@@ -47,7 +39,7 @@ MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
     marker.num_frames[id.corner] = CountImages(point);
   }
   for (ShapeMarker& marker : shape.markers) {
-    AddCenter(&marker);
+    SetCenter(&marker);
     for (int corner = 0; corner <= kNumCorners; ++corner) {
       if (!marker.x_in_shape_m[corner]) continue;
       marker.sigma_m[corner] = PointSigma(covariance, marker.marker_id, corner);

@@ -58,6 +58,13 @@ std::optional<Eigen::Vector3d> MeanOfCorners(const ShapeMarker& marker) {
   return sum / kNumCorners;
 }
 
+void SetCenter(ShapeMarker* marker) {
+  marker->x_in_shape_m[0] = MeanOfCorners(*marker);
+  if (!marker->IsWhole()) return;
+  marker->num_frames[0] =
+      *std::min_element(marker->num_frames.begin() + 1, marker->num_frames.end());
+}
+
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id) {
   const auto it =
       std::lower_bound(shape.markers.begin(), shape.markers.end(), marker_id,

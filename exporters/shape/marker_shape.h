@@ -36,6 +36,9 @@ double SigmaOfCoordinate(const Eigen::Vector3d& sigma_m);
 // The mean of the corners; nothing if one of them is unknown.
 std::optional<Eigen::Vector3d> MeanOfCorners(const ShapeMarker& marker);
 
+// Sets the centre and its number of frames from the corners; nothing if one of them is unknown.
+void SetCenter(ShapeMarker* marker);
+
 // Null without such a marker.
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
 // Null also for a marker that is not whole.

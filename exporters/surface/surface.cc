@@ -154,6 +154,24 @@ void AddDependence(const SurfaceParameters& parameters, const std::vector<Surfac
   }
 }
 
+// Sets the statistics of the used markers and notes the others.
+void SummarizeResiduals(FittedSurface* result) {
+  std::vector<double> distances_m;
+  std::vector<int> outside;
+  for (const SurfaceResidual& residual : result->residuals) {
+    if (residual.is_used) {
+      distances_m.push_back(residual.distance_m);
+    } else {
+      outside.push_back(residual.marker_id);
+    }
+  }
+  result->distance_m = ComputeStatistics(distances_m);
+  if (!outside.empty()) {
+    result->notes.push_back(fmt::format("markers outside the edge of the surface, not used: {}",
+                                        fmt::join(outside, " ")));
+  }
+}
+
 bool HasTilts(const SortedInput& sorted) {
   return std::any_of(sorted.by_id.begin(), sorted.by_id.end(),
                      [](const auto& entry) { return !entry.second.corners_in_shape_m.empty(); });
@@ -267,20 +285,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
   result.edges = EdgesOf(smooth);
   NoteEdges(sorted, ends, result.edges, &result.notes);
-  std::vector<double> distances_m;
-  std::vector<int> outside;
-  for (const SurfaceResidual& residual : result.residuals) {
-    if (residual.is_used) {
-      distances_m.push_back(residual.distance_m);
-    } else {
-      outside.push_back(residual.marker_id);
-    }
-  }
-  result.distance_m = ComputeStatistics(distances_m);
-  if (!outside.empty()) {
-    result.notes.push_back(fmt::format("markers outside the edge of the surface, not used: {}",
-                                       fmt::join(outside, " ")));
-  }
+  SummarizeResiduals(&result);
   return result;
 }
 

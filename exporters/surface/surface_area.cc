@@ -29,12 +29,7 @@ Eigen::Vector3d PointAtFraction(const std::vector<Eigen::Vector3d>& points, doub
 double RuledArea(const std::vector<SurfaceLine>& lines) {
   constexpr int kNumStrips = 50;
   std::vector<std::vector<Eigen::Vector3d>> polylines;
-  for (const SurfaceLine& line : lines) {
-    polylines.emplace_back();
-    for (const auto& marker : line.markers) {
-      if (marker) polylines.back().push_back(marker->x_in_shape_m);
-    }
-  }
+  for (const SurfaceLine& line : lines) polylines.push_back(PresentPoints(line));
   double area_m2 = 0.0;
   for (std::size_t j = 1; j < polylines.size(); ++j) {
     for (int i = 0; i < kNumStrips; ++i) {

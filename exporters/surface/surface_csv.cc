@@ -24,17 +24,31 @@ const std::vector<std::string> kResidualColumns = {"marker_id", "line",        "
 constexpr double kMaxLength_m = 1e9;
 constexpr std::size_t kDistance = 4, kIsUsed = 6;  // of the columns of residuals
 
-Eigen::Vector3d ReadPoint(const CsvRecord& record, const std::string& name) {
-  Eigen::Vector3d x_m;
-  for (std::size_t i = 1; i < kEdgeColumns.size(); ++i) {
-    double value = 0.0;
-    if (!ParseNumber(record.fields[i], &value) || !(std::abs(value) <= kMaxLength_m)) {
-      throw InputError(fmt::format("{}:{}: column {}: expected a number in metres, found '{}'",
-                                   name, record.line, kEdgeColumns[i], record.fields[i]));
-    }
-    x_m[static_cast<Eigen::Index>(i) - 1] = value;
+// The records below the header. It and the number of fields in each record have to fit `columns`.
+std::vector<CsvRecord> ReadTable(std::istream& in, const std::vector<std::string>& columns,
+                                 const std::string& name) {
+  const std::string header = fmt::format("{}", fmt::join(columns, ","));
+  std::vector<CsvRecord> records = ReadCsv(in, name);
+  if (records.empty() || records.front().fields != columns) {
+    throw InputError(fmt::format("{}: expected the header {}", name, header));
   }
-  return x_m;
+  records.erase(records.begin());
+  for (const CsvRecord& record : records) {
+    if (record.fields.size() == columns.size()) continue;
+    throw InputError(fmt::format("{}:{}: {} columns, expected {}", name, record.line,
+                                 record.fields.size(), header));
+  }
+  return records;
+}
+
+double ReadLength(const CsvRecord& record, std::size_t column,
+                  const std::vector<std::string>& columns, const std::string& name) {
+  double length_m = 0.0;
+  if (!ParseNumber(record.fields[column], &length_m) || !(std::abs(length_m) <= kMaxLength_m)) {
+    throw InputError(fmt::format("{}:{}: column {}: expected a number in metres, found '{}'", name,
+                                 record.line, columns[column], record.fields[column]));
+  }
+  return length_m;
 }
 
 }  // namespace
@@ -50,25 +64,9 @@ void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out) {
 }
 
 double ReadSurfaceResidualRms(std::istream& in, const std::string& name) {
-  const std::vector<CsvRecord> records = ReadCsv(in, name);
-  if (records.empty() || records.front().fields != kResidualColumns) {
-    throw InputError(
-        fmt::format("{}: expected the header {}", name, fmt::join(kResidualColumns, ",")));
-  }
   std::vector<double> distances_m;
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const CsvRecord& record = records[i];
-    if (record.fields.size() != kResidualColumns.size()) {
-      throw InputError(fmt::format("{}:{}: {} columns, expected {}", name, record.line,
-                                   record.fields.size(), fmt::join(kResidualColumns, ",")));
-    }
-    double distance_m = 0.0;
-    if (!ParseNumber(record.fields[kDistance], &distance_m) ||
-        !(std::abs(distance_m) <= kMaxLength_m)) {
-      throw InputError(fmt::format("{}:{}: column {}: expected a number in metres, found '{}'",
-                                   name, record.line, kResidualColumns[kDistance],
-                                   record.fields[kDistance]));
-    }
+  for (const CsvRecord& record : ReadTable(in, kResidualColumns, name)) {
+    const double distance_m = ReadLength(record, kDistance, kResidualColumns, name);
     if (record.fields[kIsUsed] == "1") distances_m.push_back(distance_m);
   }
   return Rms(distances_m);
@@ -96,23 +94,17 @@ SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
   SurfaceEdges edges;
   const std::map<std::string, std::vector<Eigen::Vector3d>*> edge_of = {
       {"luff", &edges.luff}, {"leech", &edges.leech}, {"foot", &edges.foot}, {"head", &edges.head}};
-  const std::vector<CsvRecord> records = ReadCsv(in, name);
-  if (records.empty() || records.front().fields != kEdgeColumns) {
-    throw InputError(fmt::format("{}: expected the header edge,x,y,z", name));
-  }
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const CsvRecord& record = records[i];
-    if (record.fields.size() != kEdgeColumns.size()) {
-      throw InputError(fmt::format("{}:{}: {} columns, expected edge,x,y,z", name, record.line,
-                                   record.fields.size()));
-    }
+  for (const CsvRecord& record : ReadTable(in, kEdgeColumns, name)) {
     const auto edge = edge_of.find(record.fields[0]);
     if (edge == edge_of.end()) {
       throw InputError(
           fmt::format("{}:{}: column edge: expected luff, leech, foot or head, found '{}'", name,
                       record.line, record.fields[0]));
     }
-    edge->second->push_back(ReadPoint(record, name));
+    const auto coordinate = [&](std::size_t column) {
+      return ReadLength(record, column, kEdgeColumns, name);
+    };
+    edge->second->push_back({coordinate(1), coordinate(2), coordinate(3)});
   }
   for (const auto& [edge, points] : edge_of) {
     if (points->size() == 1) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/surface/surface_rows.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -22,22 +23,15 @@ bool IsWithinReach(double offset_m, double size_m, const char* edge, SortedInput
 }
 
 double LengthOf(const SurfaceLine& line) {
-  std::vector<Eigen::Vector3d> points;
-  for (const auto& marker : line.markers) {
-    if (marker) points.push_back(marker->x_in_shape_m);
-  }
+  const std::vector<Eigen::Vector3d> points = PresentPoints(line);
   return (points.back() - points.front()).norm();
 }
 
 Eigen::Vector3d MiddleOf(const SurfaceLine& line) {
+  const std::vector<Eigen::Vector3d> points = PresentPoints(line);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (const auto& marker : line.markers) {
-    if (!marker) continue;
-    sum += marker->x_in_shape_m;
-    ++count;
-  }
-  return sum / count;
+  for (const Eigen::Vector3d& x : points) sum += x;
+  return sum / static_cast<double>(points.size());
 }
 
 constexpr const char* kEdgeNames[] = {"luff", "leech", "foot", "head"};

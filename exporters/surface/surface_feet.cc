@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 namespace velamap {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -24,11 +23,10 @@ std::optional<double> TiltSigma(const ShapeMarker& marker, double center_sigma_m
   return std::max(std::sqrt(own_m2) / 2, kMinOfCenter * center_sigma_m);
 }
 
-std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,
-                                  int marker_id) {
-  const auto found = whole_markers.find(marker_id);
-  if (found == whole_markers.end()) return std::nullopt;
-  const ShapeMarker& marker = *found->second;
+std::optional<SurfaceMarker> Find(const MarkerShape& shape, int marker_id) {
+  const ShapeMarker* found = FindWholeMarker(shape, marker_id);
+  if (found == nullptr) return std::nullopt;
+  const ShapeMarker& marker = *found;
   SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt};
   for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
     result.corners_in_shape_m.push_back(*marker.x_in_shape_m[corner]);
@@ -46,15 +44,14 @@ std::optional<double> OffsetOf(const ClothEdge& edge, std::size_t line_idx) {
 
 // The whole markers of the vertical line on the edge; fewer than two are no edge, which is noted.
 std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
-                                      const LayoutPart& part,
-                                      const std::map<int, const ShapeMarker*>& whole_markers,
+                                      const LayoutPart& part, const MarkerShape& shape,
                                       std::string* note) {
   std::vector<Eigen::Vector3d> points;
   for (const MarkerLine& line : part.vertical) {
     if (edge.line.empty() || line.name != edge.line) continue;
     for (const int id : line.marker_ids) {
-      const auto found = whole_markers.find(id);
-      if (found != whole_markers.end()) points.push_back(*found->second->x_in_shape_m[0]);
+      const ShapeMarker* marker = FindWholeMarker(shape, id);
+      if (marker != nullptr) points.push_back(*marker->x_in_shape_m[0]);
     }
   }
   if (points.size() >= 2) return points;
@@ -70,10 +67,6 @@ std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
 }  // namespace
 
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part) {
-  std::map<int, const ShapeMarker*> whole_markers;
-  for (const ShapeMarker& marker : shape.markers) {
-    if (marker.IsWhole()) whole_markers[marker.marker_id] = &marker;
-  }
   SurfaceInput input;
   std::set<int> on_lines, others(part.marker_ids.begin(), part.marker_ids.end());
   for (const MarkerLine& line : part.horizontal) {
@@ -81,15 +74,15 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
     SurfaceLine surface_line{
         line.name, {}, OffsetOf(part.edges.luff, idx), OffsetOf(part.edges.leech, idx)};
     for (const int marker_id : line.marker_ids) {
-      surface_line.markers.push_back(Find(whole_markers, marker_id));
+      surface_line.markers.push_back(Find(shape, marker_id));
       on_lines.insert(marker_id);
     }
     input.lines.push_back(surface_line);
   }
   input.foot_offset_m = OffsetOf(part.edges.foot, 0);
   input.head_offset_m = OffsetOf(part.edges.head, 0);
-  input.edges.luff = PointsOf("luff", part.edges.luff, part, whole_markers, &input.luff_note);
-  input.edges.leech = PointsOf("leech", part.edges.leech, part, whole_markers, &input.leech_note);
+  input.edges.luff = PointsOf("luff", part.edges.luff, part, shape, &input.luff_note);
+  input.edges.leech = PointsOf("leech", part.edges.leech, part, shape, &input.leech_note);
   for (const MarkerLine& line : part.vertical) {
     others.insert(line.marker_ids.begin(), line.marker_ids.end());
   }
@@ -103,7 +96,7 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
   }
   for (const int marker_id : others) {
     if (on_lines.count(marker_id) > 0) continue;
-    if (const auto marker = Find(whole_markers, marker_id)) input.markers.push_back(*marker);
+    if (const auto marker = Find(shape, marker_id)) input.markers.push_back(*marker);
   }
   return input;
 }

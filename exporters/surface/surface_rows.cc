@@ -5,7 +5,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -159,6 +158,8 @@ Eigen::Vector3d PointAtU(const SurfaceRow& row, double u) {
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> PresentPoints(const SurfaceLine& line) { return Present(line).points; }
+
 std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> lengths = {0.0};
   for (std::size_t k = 1; k < points.size(); ++k) {
@@ -169,7 +170,7 @@ std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
 
 double MeanLength(const std::vector<SurfaceLine>& lines) {
   double sum_m = 0.0;
-  for (const SurfaceLine& line : lines) sum_m += ChordLengths(Present(line).points).back();
+  for (const SurfaceLine& line : lines) sum_m += ChordLengths(PresentPoints(line)).back();
   return sum_m / static_cast<double>(lines.size());
 }
 

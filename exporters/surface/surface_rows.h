@@ -20,6 +20,9 @@ struct SurfaceRow {
   double length_m = 0.0;
 };
 
+// The places of the markers of the line that the shape has, from the luff.
+std::vector<Eigen::Vector3d> PresentPoints(const SurfaceLine& line);
+
 // Length of a polyline up to each of its points, m.
 std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points);
 

@@ -11,23 +11,23 @@ function fillTable(id, columns, rows) {
         textContent: column.text ? column.text(row) : String(column.value(row) ?? '–'),
       })))));
   show(rows);
-  const heads = columns.map((column, index) => sortingHead(column, heads => {
+  const heads = columns.map((column, index) => sortingHead(column, () => {
     const direction = heads[index].getAttribute('aria-sort') === 'ascending' ? -1 : 1;
     heads.forEach(head => head.removeAttribute('aria-sort'));
     heads[index].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
     show(rows.slice().sort((a, b) => compare(column.value(a), column.value(b), direction)));
-  }, () => heads));
+  }));
   byId(id).replaceChildren(element('table', {},
       element('thead', {}, element('tr', {}, ...heads)), body));
 }
 
-function sortingHead(column, sort, heads) {
+function sortingHead(column, sort) {
   // Browsers omit a button when a printed table repeats its head.
   const head = element('th', {scope: 'col', className: column.isText ? 'text' : '', tabIndex: 0,
                               title: 'sort', textContent: column.name});
-  head.addEventListener('click', () => sort(heads()));
+  head.addEventListener('click', sort);
   head.addEventListener('keydown', event => {
-    if (event.key === 'Enter') sort(heads());
+    if (event.key === 'Enter') sort();
   });
   return head;
 }
@@ -149,9 +149,9 @@ function fillRigs(rigs) {
   byId('table_rigs').hidden = byId('note_rigs').hidden = false;
   fillTable('table_rigs', [
     text('Rig', 'part'),
-    figure('Luff bend forwards, mm', 'luff_bend_m', 'luff_bend_sigma_m', 1, 1000),
-    figure('Luff sag to leeward, mm', 'luff_sag_m', 'luff_sag_sigma_m', 1, 1000),
-    figure('Sheeting angle, °', 'sheeting_angle_deg', 'sheeting_angle_sigma_deg', 2, 1),
+    figure('Luff bend forwards, mm', 'luff_bend', 'm', 1, 1000),
+    figure('Luff sag to leeward, mm', 'luff_sag', 'm', 1, 1000),
+    figure('Sheeting angle, °', 'sheeting_angle', 'deg', 2, 1),
   ].filter(column => rigs.some(row => column.value(row) !== undefined)), rigs);
 }
 
@@ -175,8 +175,9 @@ function fillKnownPoints(points) {
   ], points);
 }
 
-// A figure with its standard deviation, if known.
-function figure(name, key, sigmaKey, digits, factor) {
+// A figure with its standard deviation, if known: their keys are START_UNIT and START_sigma_UNIT.
+function figure(name, start, unit, digits, factor) {
+  const key = `${start}_${unit}`, sigmaKey = `${start}_sigma_${unit}`;
   return {
     name, value: row => row[key],
     text: row => row[key] === undefined ? '–' : fixed(row[key] * factor, digits) +
@@ -194,14 +195,14 @@ function fillSections({sections, section_notes: notes, design}) {
   }
   fillTable('table_sections', [
     text('Section', 'name'), number('Height, m', 'height_m', 3),
-    figure('Chord, mm', 'chord_m', 'chord_sigma_m', 1, 1000),
-    figure('Camber, %', 'camber_percent', 'camber_sigma_percent', 2, 1),
-    figure('Draft, %', 'draft_percent', 'draft_sigma_percent', 1, 1),
-    figure('Entry, °', 'entry_deg', 'entry_sigma_deg', 1, 1),
-    figure('Exit, °', 'exit_deg', 'exit_sigma_deg', 1, 1),
-    figure('Twist, °', 'twist_deg', 'twist_sigma_deg', 2, 1),
-    figure('Leech twist, °', 'leech_twist_deg', 'leech_twist_sigma_deg', 1, 1),
-    figure('Girth, mm', 'girth_m', 'girth_sigma_m', 1, 1000),
+    figure('Chord, mm', 'chord', 'm', 1, 1000),
+    figure('Camber, %', 'camber', 'percent', 2, 1),
+    figure('Draft, %', 'draft', 'percent', 1, 1),
+    figure('Entry, °', 'entry', 'deg', 1, 1),
+    figure('Exit, °', 'exit', 'deg', 1, 1),
+    figure('Twist, °', 'twist', 'deg', 2, 1),
+    figure('Leech twist, °', 'leech_twist', 'deg', 1, 1),
+    figure('Girth, mm', 'girth', 'm', 1, 1000),
     text('Incomplete', 'note'),
   ].filter(column => sections.some(row => column.value(row) !== undefined)), sections);
 }

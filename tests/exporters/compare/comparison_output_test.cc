@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/compare/comparison.h"
 #include "exporters/compare/comparison_report.h"
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/comparison_page/comparison_ply.h"
@@ -139,6 +140,27 @@ TEST(ComparisonReport, AShapeIsZeroFromItself) {
       EXPECT_EQ(std::get<double>(metric.value), 0.0);
     }
   }
+}
+
+// The second shape lacks a marker, so that the surface of the reference is fitted to fewer.
+TEST(ComparisonReport, AReferenceThatASeriesSharesGivesTheSameFigures) {
+  const UncertainShape boat = WithSigmas(BoatShape(0.001));
+  const SeriesReference shared(boat);
+  ComparisonOptions options;
+  options.with_deflections = true;
+  const auto figures = [&](const UncertainShape& shape, const SeriesReference& reference) {
+    const Comparison comparison = Compare("trim", shape, reference, BoatLayout(), options);
+    std::ostringstream out;
+    WriteMetricsCsv(MakeComparisonReport({comparison}), out);
+    WriteDeflectionCsv({{comparison.name, &comparison.deflections}}, out);
+    return out.str();
+  };
+  const FittedSurface& surface = shared.surfaces.Of(BoatLayout().parts.front());
+  const MarkerShape fuller = Shifted({33, 34}, {0, 0.02, 0}, boat.shape);
+  for (const MarkerShape& shape : {fuller, Without({22}, fuller), fuller}) {
+    EXPECT_EQ(figures(WithSigmas(shape), shared), figures(WithSigmas(shape), boat));
+  }
+  EXPECT_EQ(&surface, &shared.surfaces.Of(BoatLayout().parts.front()));
 }
 
 TEST(ComparisonReport, OfASurfaceHasNoVectors) {
