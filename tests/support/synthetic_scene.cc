@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <random>
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include "importer/geometry/look_at.h"
@@ -178,9 +178,7 @@ SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options) {
   scene.cam_from_world = PlaceCameras(options, &generator);
   for (int i = 0; i < options.num_frames; ++i) {
     FrameDetections frame;
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "frame_%06d.jpg", i);
-    frame.image_name = name.data();
+    frame.image_name = fmt::format("frame_{:06}.jpg", i);
     if (options.video) {
       frame.frame_number = i;
       frame.time_s = i / 30.0;
