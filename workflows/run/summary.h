@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"
-#include "workflows/run/pipeline.h"
+#include "reconstruct/registration/registration.h"
 
 namespace velamap {
 
