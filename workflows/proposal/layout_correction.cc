@@ -158,11 +158,15 @@ class Corrector {
         part->marker_ids.insert(part->marker_ids.end(), unnamed.begin(), unnamed.end());
       }
     }
-    if (added_alone.empty()) return;
+    if (!added_alone.empty()) AddPart(std::move(added_alone));
+  }
+
+  // A part of its own, for markers that stand with none that the layout names.
+  void AddPart(Ids ids) {
     LayoutPart part;
     part.name = UnusedName("unnamed", given_.parts);
-    std::sort(added_alone.begin(), added_alone.end());
-    part.marker_ids = std::move(added_alone);
+    std::sort(ids.begin(), ids.end());
+    part.marker_ids = std::move(ids);
     proposal_.notes.push_back(fmt::format("part {}: NOT SURE where its markers belong", part.name));
     proposal_.layout.parts.push_back(std::move(part));
   }
