@@ -169,7 +169,7 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
 class ErrorSums {
  public:
   void Add(const QuadCorners& found, const QuadCorners& truth) {
-    const Eigen::Vector2d middle = 0.25 * (truth[0] + truth[1] + truth[2] + truth[3]);
+    const Eigen::Vector2d middle = QuadCenter(truth);
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       const Eigen::Vector2d error = found[i] - truth[i];
       outwards_ += error.dot((truth[i] - middle).normalized());
