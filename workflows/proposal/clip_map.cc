@@ -139,7 +139,8 @@ class Mapper {
     images_ = WithAllIds(database.ReadImages());
     counts_ = CountFrames(images_);
     map_.duplicates = DescribeDuplicates(counts_);
-    images_ = Only(std::move(images_), OftenSeen());
+    FindOftenSeen();
+    images_ = Only(std::move(images_), often_seen_);
     if (adjustment_.find_camera) {
       cameras_ = FindUnknownCameras(images_, cameras_, layout_, CornerErrorsOf(images_, formation_),
                                     registration_, adjustment_);
@@ -147,7 +148,7 @@ class Mapper {
   }
 
   ClipMap Map() {
-    std::set<int> rest = OftenSeen();
+    std::set<int> rest = often_seen_;
     for (bool is_first = true; rest.size() >= kMinOnBody; is_first = false) {
       try {
         AddBody(Only(images_, rest));
@@ -171,19 +172,18 @@ class Mapper {
   }
 
  private:
-  std::set<int> OftenSeen() {
+  // All other ids are left out.
+  void FindOftenSeen() {
     const std::set<int> rare = FindRareIds(counts_.num_frames);
-    std::set<int> ids;
     for (const auto& [marker_id, num] : counts_.num_frames) {
       if (rare.count(marker_id) > 0) {
         map_.left_out[marker_id] = "read rarely, probably misread";
       } else if (num < kMinFrames) {
         map_.left_out[marker_id] = "seen in one frame only";
       } else {
-        ids.insert(marker_id);
+        often_seen_.insert(marker_id);
       }
     }
-    return ids;
   }
 
   void AddBody(const std::vector<DatabaseImage>& images) {
@@ -222,6 +222,7 @@ class Mapper {
   MarkerAdjustmentOptions adjustment_;
   std::vector<DatabaseImage> images_;
   FrameCounts counts_;
+  std::set<int> often_seen_;  // ids that may get a place
   ClipMap map_;
 };
 

@@ -88,7 +88,7 @@ ClipScene MakeBentScene(const CornerCase& parameters, std::uint32_t seed) {
   // A little to the side and rolled, so that no side runs along the pixels.
   const Eigen::Quaterniond cam_from_world =
       Eigen::AngleAxisd(0.2 + 0.3 * seed, Eigen::Vector3d::UnitZ()) *
-      Eigen::AngleAxisd(0.5 * 180 * kRadPerDeg, Eigen::Vector3d::UnitX());
+      Eigen::AngleAxisd(90 * kRadPerDeg, Eigen::Vector3d::UnitX());
   scene.cam_from_world = [pose = Rigid3{cam_from_world, {0.001 * seed, 0, distance_m}}](double) {
     return pose;
   };
