@@ -77,9 +77,14 @@ void BM_RegistrationAndAdjustment(benchmark::State& state) {
 }
 BENCHMARK(BM_RegistrationAndAdjustment)->Apply(Sizes);
 
+Model Seed(const SyntheticScene& scene) {
+  Model model = MakeSceneModel(scene);
+  PerturbSeed(0.001, 1, &model);  // 4 mm
+  return model;
+}
+
 void BM_ColmapWithDefaultsInTimeOrder(benchmark::State& state) {
-  Model seed = MakeSceneModel(Sail(state));
-  PerturbSeed(0.001, 1, &seed);  // 4 mm
+  const Model seed = Seed(Sail(state));
   const TempDir folder;
   const auto input = folder / "seed", output = folder / "adjusted";
   std::filesystem::create_directories(output);
@@ -94,12 +99,6 @@ void BM_ColmapWithDefaultsInTimeOrder(benchmark::State& state) {
       benchmark::Counter(CpuSeconds(RUSAGE_CHILDREN) - before, benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(BM_ColmapWithDefaultsInTimeOrder)->Apply(Sizes);
-
-Model Seed(const SyntheticScene& scene) {
-  Model model = MakeSceneModel(scene);
-  PerturbSeed(0.001, 1, &model);  // 4 mm
-  return model;
-}
 
 void BM_MarkerAdjustment(benchmark::State& state) {
   const SyntheticScene scene = Sail();

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <random>
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include "importer/geometry/look_at.h"
@@ -114,7 +114,7 @@ std::vector<Rigid3> PlaceCameras(const SyntheticSceneOptions& options, std::mt19
   for (int i = 0; i < options.num_frames; ++i) {
     const double t = options.num_frames > 1 ? 2.0 * i / (options.num_frames - 1) - 1 : 0.0;
     const Eigen::Vector3d wobble(unit(*generator), unit(*generator), unit(*generator));
-    Eigen::Vector3d position;
+    Eigen::Vector3d position, target = Eigen::Vector3d::Zero();
     if (options.kind == SceneKind::kCube) {
       // One turn around while rising, so that top and bottom are seen too.
       const double angle = kPi * t;
@@ -122,10 +122,8 @@ std::vector<Rigid3> PlaceCameras(const SyntheticSceneOptions& options, std::mt19
           3 * extent * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.9 * std::sin(2.5 * t));
     } else {
       position = extent * Eigen::Vector3d(0.9 * t, -1.7, 0.3 * std::sin(3 * t));
+      target = 0.05 * extent * wobble.reverse();
     }
-    const Eigen::Vector3d target = options.kind == SceneKind::kCube
-                                       ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                       : Eigen::Vector3d(0.05 * extent * wobble.reverse());
     const Eigen::Vector3d moved = position + 0.05 * extent * wobble;
     const bool looks_along_z = std::abs((target - moved).normalized().z()) > 0.95;
     const Eigen::Vector3d up = looks_along_z ? Eigen::Vector3d(0, -1, 0) : Eigen::Vector3d::UnitZ();
@@ -178,9 +176,7 @@ SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options) {
   scene.cam_from_world = PlaceCameras(options, &generator);
   for (int i = 0; i < options.num_frames; ++i) {
     FrameDetections frame;
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "frame_%06d.jpg", i);
-    frame.image_name = name.data();
+    frame.image_name = fmt::format("frame_{:06}.jpg", i);
     if (options.video) {
       frame.frame_number = i;
       frame.time_s = i / 30.0;
@@ -205,10 +201,8 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene) {
       if (unit(generator) < options.missing_rate) continue;
       const bool is_outlier = unit(generator) < options.outlier_rate;
       const double angle = 2 * kPi * unit(generator);
-      const Eigen::Vector2d shift =
-          is_outlier ? Eigen::Vector2d(options.outlier_px *
-                                       Eigen::Vector2d(std::cos(angle), std::sin(angle)))
-                     : Eigen::Vector2d(Eigen::Vector2d::Zero());
+      const double shift_px = is_outlier ? options.outlier_px : 0.0;
+      const Eigen::Vector2d shift = shift_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
         corner +=
             shift + options.corner_sigma_px * Eigen::Vector2d(normal(generator), normal(generator));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "importer/geometry/quad.h"
 #include "tests/support/clip/clip_files.h"
 #include "tests/support/render/surface_renderer.h"
 #include "tests/support/temp_dir.h"
@@ -21,8 +22,7 @@ std::vector<DatabaseImage> Detections(const ClipScene& scene, double growth) {
       if (!corners) continue;
       MarkerDetection detection;
       detection.marker_id = marker.marker_id;
-      const Eigen::Vector2d middle =
-          0.25 * ((*corners)[0] + (*corners)[1] + (*corners)[2] + (*corners)[3]);
+      const Eigen::Vector2d middle = QuadCenter(*corners);
       for (std::size_t k = 0; k < kNumCorners; ++k) {
         detection.corners_in_image_px[k] = middle + growth * ((*corners)[k] - middle);
         detection.corner_sigma_px[k] = 0.05;

@@ -36,10 +36,12 @@ struct Study {
   std::vector<double> curvature_errors;  // inside, 1/m
 };
 
-void AddErrors(const std::vector<SurfaceError>& errors, double sigma_m, Study* study) {
+// `sigma_m_at` gives the sigma of a marker at a fraction of its line.
+template <typename Sigma>
+void AddErrors(const std::vector<SurfaceError>& errors, const Sigma& sigma_m_at, Study* study) {
   study->squared_errors.resize(errors.size());
   for (std::size_t k = 0; k < errors.size(); ++k) {
-    const double in_sigmas = errors[k].distance_m / MarkerSigma(sigma_m, errors[k].along);
+    const double in_sigmas = errors[k].distance_m / sigma_m_at(errors[k].along);
     study->squared_errors[k] += in_sigmas * in_sigmas;
     if (!errors[k].is_inside) continue;
     study->curvature_errors.push_back(std::abs(errors[k].found_curvature - errors[k].curvature));
@@ -80,13 +82,14 @@ void PrintDraws(const std::vector<double>& sigmas_mm, int num_draws, unsigned se
   PrintHeader();
   for (const double sigma_mm : sigmas_mm) {
     const double sigma_m = sigma_mm / kMmPerM;
+    const auto sigma_m_at = [&](double along) { return MarkerSigma(sigma_m, along); };
     Study study{"random", sigma_mm, 0, {}, {}};
     for (int draw = 0; draw < num_draws; ++draw) {
       std::mt19937 random(seed + static_cast<unsigned>(draw));
       const Surface sail = DrawSail(&random);
       const SailLines lines = DrawLines(sail, &random);
       const SurfaceInput input = DrawMarkers(sail, lines, sigma_m, &random);
-      AddErrors(MeasureSurface(FitSurface(input).surface, sail, lines), sigma_m, &study);
+      AddErrors(MeasureSurface(FitSurface(input).surface, sail, lines), sigma_m_at, &study);
     }
     Print(study);
   }
@@ -161,13 +164,9 @@ void PrintClip(const ClipPaths& paths, bool with_profiles) {
     marker_errors_m.push_back(normal.dot(sail_from_shape * found_m[k] - true_m[k]));
   }
   const double marker_rms_m = ComputeStatistics(marker_errors_m).rms;
-  Study study{paths.name, std::round(1e4 * kMmPerM * marker_rms_m) / 1e4, 1, {}, {}};
-  for (const SurfaceError& error : errors) {
-    const double ratio = error.distance_m / marker_rms_m;
-    study.squared_errors.push_back(ratio * ratio);
-    if (!error.is_inside) continue;
-    study.curvature_errors.push_back(std::abs(error.found_curvature - error.curvature));
-  }
+  Study study{paths.name, std::round(1e4 * kMmPerM * marker_rms_m) / 1e4, 0, {}, {}};
+  AddErrors(
+      errors, [&](double) { return marker_rms_m; }, &study);
   PrintHeader();
   Print(study);
 }

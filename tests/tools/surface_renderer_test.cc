@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/geometry/quad.h"
 #include "importer/refine/marker_detector.h"
 
 namespace velamap {
@@ -51,7 +52,7 @@ CornerErrors DetectAndCompare(const ClipScene& scene, const std::vector<int>& fr
       const auto it = found.find(marker.marker_id);
       if (!truth || it == found.end()) continue;
       ++errors.num_markers;
-      const Eigen::Vector2d middle = 0.25 * ((*truth)[0] + (*truth)[1] + (*truth)[2] + (*truth)[3]);
+      const Eigen::Vector2d middle = QuadCenter(*truth);
       for (std::size_t i = 0; i < kNumCorners; ++i) {
         const Eigen::Vector2d error = it->second[i] - (*truth)[i];
         errors.mean_px += error;

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -21,10 +21,12 @@
 #include "workflows/proposal/clip_map.h"
 #include "workflows/proposal/layout_correction.h"
 #include "workflows/proposal/print_faults.h"
-#include "workflows/run/progress.h"
+#include "workflows/run/pipeline.h"
 
 namespace velamap {
 namespace {
+
+using DetectionsByName = std::map<std::string, const FrameDetections*>;
 
 constexpr int kNumFramesWithPixels = 10;
 constexpr std::size_t kFewMarkers = 4;
@@ -70,8 +72,7 @@ double SecondsPerFrame(const ClipFrames& clip) {
 }
 
 // Light and blur of all markers in the frames that were read with their pixels.
-void MeasureLights(const ClipFrames& clip,
-                   const std::map<std::string, const FrameDetections*>& detections, bool inverted,
+void MeasureLights(const ClipFrames& clip, const DetectionsByName& detections, bool inverted,
                    ClipFacts* facts) {
   std::vector<double> blacks, whites, blurs_px, motions_px;
   for (const Frame& frame : clip.frames) {
@@ -152,11 +153,7 @@ class Checker {
     importer.num_threads = options_.num_threads;
     importer.video = video;
     try {
-      Progress progress("looking at frames");
-      const ImportReport report =
-          ImportMarkers(importer, [&progress](int done, int total, const std::string& message) {
-            progress.Update(done, total, message);
-          });
+      const ImportReport report = ImportWithProgress(importer, "looking at frames");
       check_.facts.num_frames_read = report.num_frames_read;
       check_.facts.num_frames_damaged = report.num_frames_damaged;
     } catch (const DataError& error) {
@@ -167,8 +164,12 @@ class Checker {
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
-    CollectFacts(clip, video.frame_step, layout, images);
-    FindFaults(clip, images, layout, importer.detection);
+    DetectionsByName by_name;
+    for (const DatabaseImage& image : images) {
+      by_name[image.detections.image_name] = &image.detections;
+    }
+    CollectFacts(clip, video.frame_step, layout, images, by_name);
+    FindFaults(clip, by_name, layout, importer.detection);
     if (options_.proposes_layout) Propose(importer.database_path, layout);
     if (!MeasuresPrecision()) return;
     LogInfo("reconstructing the frames for the precision");
@@ -181,14 +182,10 @@ class Checker {
   }
 
   // Of the prints, for a layout; of the pictures, where the clip hardly shows any marker.
-  void FindFaults(const ClipFrames& clip, const std::vector<DatabaseImage>& images,
-                  const Layout& layout, const ArucoDetectionOptions& detection) {
+  void FindFaults(const ClipFrames& clip, const DetectionsByName& by_name, const Layout& layout,
+                  const ArucoDetectionOptions& detection) {
     ClipFacts& facts = check_.facts;
     if (!options_.proposes_layout && !facts.MissesMostMarkers()) return;
-    std::map<std::string, const FrameDetections*> by_name;
-    for (const DatabaseImage& image : images) {
-      by_name[image.detections.image_name] = &image.detections;
-    }
     LogInfo("looking for mirrored and inverted markers in {} frames", clip.frames.size());
     PrintFaults faults = FindPrintFaults(clip.frames, by_name, layout, detection);
     const std::size_t num_seen = facts.num_frames_of_id.size();
@@ -220,14 +217,12 @@ class Checker {
   }
 
   void CollectFacts(const ClipFrames& clip, int frame_step, const Layout& layout,
-                    const std::vector<DatabaseImage>& images) {
+                    const std::vector<DatabaseImage>& images, const DetectionsByName& by_name) {
     ClipFacts& facts = check_.facts;
     CollectIds(images, layout, &facts);
-    std::map<std::string, const FrameDetections*> by_name;
     std::vector<double> sides_px;
     int num_with_enough = 0;
     for (const DatabaseImage& image : images) {
-      by_name[image.detections.image_name] = &image.detections;
       num_with_enough += image.detections.markers.size() >= kFewMarkers;
       for (const MarkerDetection& marker : image.detections.markers) {
         sides_px.push_back(QuadMeanSide(marker.corners_in_image_px));

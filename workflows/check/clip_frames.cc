@@ -10,10 +10,18 @@
 #include "importer/base/parallel.h"
 
 namespace velamap {
+namespace {
+
+// The distance of at most `max_num_frames` frames that are spread over `num_frames`.
+int FrameStride(int num_frames, int max_num_frames) {
+  return std::max(1, (num_frames + max_num_frames - 1) / max_num_frames);
+}
+
+}  // namespace
 
 VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames) {
   VideoOptions spread = video;
-  spread.frame_step *= std::max(1, (num_frames + max_num_frames - 1) / max_num_frames);
+  spread.frame_step *= FrameStride(num_frames, max_num_frames);
   return spread;
 }
 
@@ -22,8 +30,7 @@ ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& vid
   ClipFrames clip;
   const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
   clip.is_video = source->IsVideo();
-  const int stride =
-      clip.is_video ? 1 : std::max(1, (source->NumFrames() + max_num_frames - 1) / max_num_frames);
+  const int stride = clip.is_video ? 1 : FrameStride(source->NumFrames(), max_num_frames);
   for (int idx = 0; static_cast<int>(clip.frames.size()) < max_num_frames; ++idx) {
     std::optional<Frame> frame = source->Next();
     if (!frame) break;

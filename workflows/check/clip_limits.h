@@ -4,8 +4,9 @@
 
 namespace velamap {
 
-// Sides of markers in the picture: of a good clip, 99 % of the markers are found from 20 px on and
-// fewer than half below 12 px (the table of distances in sample_project/guide_sailor.md).
+// Sides of markers in the picture: in a good clip, more than 99 % of the markers are found from 20
+// px on. Below 12 px, more than a tenth are lost, and below 9 px more than half (the table of
+// distances in sample_project/guide_sailor.md).
 inline constexpr double kGoodSidePx = 20.0, kBadSidePx = 12.0;
 // Below the first parallax, depth is several times less certain than width; below the second, it is
 // hopeless.

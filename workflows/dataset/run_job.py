@@ -26,21 +26,23 @@ from records import as_json, read_json, write_whole
 from result_columns import SWEEP_FIGURES
 
 
-def numbers_with_markers(database: Path) -> list[int]:
+def query(database: Path, statement: str) -> list[tuple[Any, ...]]:
     uri = f"{database.resolve().as_uri()}?mode=ro"
     with contextlib.closing(sqlite3.connect(uri, uri=True)) as connection:
-        return [number for number, in connection.execute(
-            "SELECT DISTINCT frame_number FROM marker_detections "
-            "WHERE frame_number IS NOT NULL AND rejected_because IS NULL ORDER BY 1")]
+        return connection.execute(statement).fetchall()
+
+
+def numbers_with_markers(database: Path) -> list[int]:
+    return [number for number, in query(
+        database, "SELECT DISTINCT frame_number FROM marker_detections "
+        "WHERE frame_number IS NOT NULL AND rejected_because IS NULL ORDER BY 1")]
 
 
 def duration_s(database: Path) -> float | None:
     """From the first to the last frame with markers, the last one's own time included."""
-    uri = f"{database.resolve().as_uri()}?mode=ro"
-    with contextlib.closing(sqlite3.connect(uri, uri=True)) as connection:
-        first, last, first_s, last_s = connection.execute(
-            "SELECT MIN(frame_number), MAX(frame_number), MIN(time_s), MAX(time_s) "
-            "FROM marker_detections").fetchone()
+    (first, last, first_s, last_s), = query(
+        database, "SELECT MIN(frame_number), MAX(frame_number), MIN(time_s), MAX(time_s) "
+        "FROM marker_detections")
     if first_s is None or last is None or last == first:
         return None
     return float((last_s - first_s) * (last - first + 1) / (last - first))

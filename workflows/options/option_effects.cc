@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/log.h"
@@ -107,9 +108,7 @@ void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
 }
 
 void RefuseSailOptions(const TypedNames& typed, const Layout& layout) {
-  const bool has_lines = std::any_of(layout.parts.begin(), layout.parts.end(),
-                                     [](const auto& part) { return !part.horizontal.empty(); });
-  if (has_lines) return;
+  if (FirstPartWithLines(layout) != nullptr) return;
   RefuseOptionsWithoutEffect(
       typed,
       {"design_path", "Section.", "Surface.luff_extension", "Surface.leech_extension",

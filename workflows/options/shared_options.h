@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exporters/scale/metric_scale.h"
+#include "importer/base/log.h"
 #include "importer/camera/camera.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
@@ -15,7 +16,6 @@
 #include "workflows/options/option_parser.h"
 #include "workflows/options/preset.h"
 #include "workflows/run/adjustment.h"
-#include "workflows/run/logging.h"
 
 namespace velamap {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "workflows/plan/plan_writer.h"
 
@@ -19,14 +20,10 @@ class Panel {
  public:
   Panel(const Eigen::Vector2d& min_mm, const Eigen::Vector2d& max_mm,
         const std::vector<Eigen::Vector2d>& points_m) {
-    Eigen::Vector2d low = points_m.front(), high = low;
-    for (const Eigen::Vector2d& point : points_m) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-    const Eigen::Vector2d size = (high - low).cwiseMax(1e-6);
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& point : points_m) box.extend(point);
+    const Eigen::Vector2d size = box.sizes().cwiseMax(1e-6), middle = box.center();
     mm_per_m_ = ((max_mm - min_mm).array() / size.array()).minCoeff();
-    const Eigen::Vector2d middle = 0.5 * (low + high);
     origin_mm_ = 0.5 * (min_mm + max_mm) - mm_per_m_ * Eigen::Vector2d(middle.x(), -middle.y());
   }
   // `point_m`: right and up.
@@ -45,17 +42,28 @@ std::vector<Eigen::Vector2d> Square(const Eigen::Vector2d& middle_mm, double hal
   return RectangleOutline(middle_mm - reach, middle_mm + reach);
 }
 
+// Below the panel between these corners, in its middle.
+void AddCaption(const std::string& text, const Eigen::Vector2d& min_mm,
+                const Eigen::Vector2d& max_mm, const Color& color, Drawing* page) {
+  page->texts.push_back({text,
+                         {0.5 * (min_mm.x() + max_mm.x()), max_mm.y() + 6},
+                         kWords_mm,
+                         TextAnchor::kMiddle,
+                         false,
+                         color});
+}
+
 Eigen::Vector2d FromAbove(const Eigen::Vector3d& x) { return x.head<2>(); }
 Eigen::Vector2d FromAhead(const Eigen::Vector3d& x) { return {x.x(), x.z()}; }
 
 void DrawFromAbove(const ShootPlan& plan, const Eigen::Vector2d& min_mm,
                    const Eigen::Vector2d& max_mm, Drawing* page) {
-  std::vector<Eigen::Vector2d> cameras, all;
+  std::vector<Eigen::Vector2d> cameras;
   for (const double angle_deg : AnglesOf(plan.path)) {
     const Rigid3 cam_from_plan = CameraAt(plan.surface, plan.path, angle_deg);
     cameras.push_back(FromAbove(Inverse(cam_from_plan).translation));
   }
-  all = cameras;
+  std::vector<Eigen::Vector2d> all = cameras;
   for (const ShapeMarker& marker : plan.surface.shape.markers) {
     all.push_back(FromAbove(*marker.x_in_shape_m[0]));
   }
@@ -77,13 +85,9 @@ void DrawFromAbove(const ShootPlan& plan, const Eigen::Vector2d& min_mm,
          0.5,
          kInk});
   }
-  page->texts.push_back({fmt::format("{:.4g} m, {:.0f} degrees, {} views", plan.path.distance_m,
-                                     plan.path.arc_deg, plan.path.num_views),
-                         {0.5 * (min_mm.x() + max_mm.x()), max_mm.y() + 6},
-                         kWords_mm,
-                         TextAnchor::kMiddle,
-                         false,
-                         kPath});
+  AddCaption(fmt::format("{:.4g} m, {:.0f} degrees, {} views", plan.path.distance_m,
+                         plan.path.arc_deg, plan.path.num_views),
+             min_mm, max_mm, kPath, page);
 }
 
 // From blue, the least sigma, to red, the greatest.
@@ -125,12 +129,7 @@ void DrawFromAhead(const ShootPlan& plan, const Eigen::Vector2d& min_mm,
       precision
           ? fmt::format("1 sigma of the markers: {:.2g} mm (blue) to {:.2g} mm (red)", least, most)
           : "these views give no shape";
-  page->texts.push_back({legend,
-                         {0.5 * (min_mm.x() + max_mm.x()), max_mm.y() + 6},
-                         kWords_mm,
-                         TextAnchor::kMiddle,
-                         false,
-                         kGray});
+  AddCaption(legend, min_mm, max_mm, kGray, page);
 }
 
 }  // namespace

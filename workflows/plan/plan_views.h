@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "importer/camera/camera.h"
@@ -64,8 +63,9 @@ double NarrowPxForHalf(int num_cells);
 double CornerSigma(double corner_sigma_px, double side_px);
 
 // The longest path of a marker in the picture while the shutter is open: half a cell of its narrow
-// side. It costs some 5 % of the markers and a quarter of the corners' precision; with a whole cell
-// a fifth of the markers are lost, and with one and a half most of them.
+// side. It costs hardly a marker and a quarter of the corners' precision; with 1.2 cells a fifth of
+// small markers are lost, and with one and a half most of them (the table of motions in
+// sample_project/guide_sailor.md).
 double ToleratedMotionPx(double narrow_px, int num_cells);
 
 }  // namespace velamap

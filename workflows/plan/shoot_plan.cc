@@ -24,6 +24,11 @@ ViewSummary SummarizePath(const PlannedSurface& surface, const Camera& camera,
   return Summarize(surface, views);
 }
 
+ViewSummary SummarizeView(const PlannedSurface& surface, const Camera& camera,
+                          const PlannedPath& path, double angle_deg) {
+  return Summarize(surface, {SeeMarkers(surface, camera, CameraAt(surface, path, angle_deg))});
+}
+
 double NumFound(const PlannedSurface& surface, const ViewSummary& summary) {
   return summary.found_share * static_cast<double>(surface.shape.markers.size());
 }
@@ -95,10 +100,7 @@ void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
                         const PlannedPath& path, const ViewSummary& summary) {
   const double num_found = NumFound(surface, summary);
   if (num_found >= kMinMarkersOfView || summary.found_share > 0.5) return;
-  PlannedPath straight = path;
-  straight.arc_deg = 0;
-  straight.num_views = 1;
-  const ViewSummary ahead = SummarizePath(surface, camera, straight);
+  const ViewSummary ahead = SummarizeView(surface, camera, path, 0.0);
   throw InputError(fmt::format(
       "--Plan.distance: from {} m {:.1f} of {} markers are found in a view (from straight ahead, "
       "{:.0f} % are in the picture, {:.1f} px wide where {:.0f} px are needed); give such as {} m",
@@ -125,9 +127,7 @@ double LongestExposure(const PlannedSurface& surface, double narrow_px, double m
 double NarrowestAlongPath(const ShootPlan& plan) {
   std::optional<double> narrowest_px;
   for (const double angle_deg : AnglesOf(plan.path)) {
-    const ViewSummary view = Summarize(
-        plan.surface,
-        {SeeMarkers(plan.surface, plan.camera, CameraAt(plan.surface, plan.path, angle_deg))});
+    const ViewSummary view = SummarizeView(plan.surface, plan.camera, plan.path, angle_deg);
     if (NumFound(plan.surface, view) < 0.5 * NumNeeded(plan.surface)) continue;
     narrowest_px = std::min(narrowest_px.value_or(view.median_narrow_px), view.median_narrow_px);
   }
@@ -147,23 +147,17 @@ PlannedVariant MakeVariant(const std::string& changed, const PlannedPath& path,
 }
 
 void AddVariants(const ShootPlanOptions& options, ShootPlan* plan) {
-  const auto add = [&](const std::string& changed, const PlannedPath& path) {
+  const auto add = [&](const std::string& changed, auto PlannedPath::*member, auto value) {
+    PlannedPath path = plan->path;
+    path.*member = value;
     plan->variants.push_back(MakeVariant(changed, path, plan->surface, plan->camera, options));
   };
-  for (const int num_views : {5, 10, 20, 40, 80}) {
-    PlannedPath changed = plan->path;
-    changed.num_views = num_views;
-    add("views", changed);
-  }
+  for (const int num_views : {5, 10, 20, 40, 80}) add("views", &PlannedPath::num_views, num_views);
   for (const double arc_deg : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0}) {
-    PlannedPath changed = plan->path;
-    changed.arc_deg = arc_deg;
-    add("arc", changed);
+    add("arc", &PlannedPath::arc_deg, arc_deg);
   }
   for (const double factor : {0.7, 1.5, 2.0}) {
-    PlannedPath changed = plan->path;
-    changed.distance_m = Rounded(factor * plan->path.distance_m);
-    add("distance", changed);
+    add("distance", &PlannedPath::distance_m, Rounded(factor * plan->path.distance_m));
   }
 }
 
@@ -172,10 +166,8 @@ void AddViews(const ShootPlanOptions& options, ShootPlan* plan) {
     for (const double angle_deg : {0.0, 30.0, 60.0}) {
       PlannedPath from = plan->path;
       from.distance_m = factor == 1 ? plan->path.distance_m : Rounded(factor * from.distance_m);
-      PlannedView view{from.distance_m, angle_deg, {}, 0.0};
-      view.summary = Summarize(
-          plan->surface,
-          {SeeMarkers(plan->surface, plan->camera, CameraAt(plan->surface, from, angle_deg))});
+      PlannedView view{from.distance_m, angle_deg,
+                       SummarizeView(plan->surface, plan->camera, from, angle_deg), 0.0};
       view.exposure_s =
           LongestExposure(plan->surface, view.summary.median_narrow_px,
                           MotionPxPerS(plan->camera, from.distance_m, options.SpeedInMPerS(),

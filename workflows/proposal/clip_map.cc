@@ -139,7 +139,8 @@ class Mapper {
     images_ = WithAllIds(database.ReadImages());
     counts_ = CountFrames(images_);
     map_.duplicates = DescribeDuplicates(counts_);
-    images_ = Only(std::move(images_), OftenSeen());
+    FindOftenSeen();
+    images_ = Only(std::move(images_), often_seen_);
     if (adjustment_.find_camera) {
       cameras_ = FindUnknownCameras(images_, cameras_, layout_, CornerErrorsOf(images_, formation_),
                                     registration_, adjustment_);
@@ -147,19 +148,16 @@ class Mapper {
   }
 
   ClipMap Map() {
-    std::set<int> rest = OftenSeen();
+    std::set<int> rest = often_seen_;
     for (bool is_first = true; rest.size() >= kMinOnBody; is_first = false) {
       try {
-        AddBody(Only(images_, rest));
+        if (!AddBody(Only(images_, rest))) break;
       } catch (const DataError& error) {
         if (is_first) throw;
         LogDebug("no other body: {}", error.what());
         break;
       }
       for (const auto& [marker_id, points] : map_.bodies.back()) rest.erase(marker_id);
-      if (map_.bodies.back().size() >= kMinOnBody) continue;
-      map_.bodies.pop_back();
-      break;
     }
     if (map_.bodies.empty()) {
       throw DataError(fmt::format("fewer than {} markers keep their places relative to each other",
@@ -171,22 +169,22 @@ class Mapper {
   }
 
  private:
-  std::set<int> OftenSeen() {
+  // All other ids are left out.
+  void FindOftenSeen() {
     const std::set<int> rare = FindRareIds(counts_.num_frames);
-    std::set<int> ids;
     for (const auto& [marker_id, num] : counts_.num_frames) {
       if (rare.count(marker_id) > 0) {
         map_.left_out[marker_id] = "read rarely, probably misread";
       } else if (num < kMinFrames) {
         map_.left_out[marker_id] = "seen in one frame only";
       } else {
-        ids.insert(marker_id);
+        often_seen_.insert(marker_id);
       }
     }
-    return ids;
   }
 
-  void AddBody(const std::vector<DatabaseImage>& images) {
+  // Returns whether enough markers keep their places for a body; otherwise all stay left out.
+  bool AddBody(const std::vector<DatabaseImage>& images) {
     Layout layout = layout_;
     Registration registration = RegisterFrames(images, cameras_, layout, registration_);
     if (FindOtherLengths(registration, &layout)) {
@@ -202,17 +200,19 @@ class Mapper {
       MarkerPoints& points = body[marker.marker_id];
       for (std::size_t i = 0; i < points.size(); ++i) points[i] = *marker.x_in_shape_m[i];
     }
+    for (const DroppedMarker& marker : registration.dropped_markers) {
+      map_.left_out[marker.marker_id] = marker.reason;
+    }
+    if (body.size() < kMinOnBody) return false;
     const ScaleAudit audit = AuditScale(shape, layout, &model, &summary.uncertainty);
     for (const MarkerScale& marker : audit.markers) {
       map_.sides[marker.marker_id] = {
           marker.side_m,
           marker.side_m * std::hypot(marker.sigma.value_or(0.0), audit.marker_spread)};
     }
-    for (const DroppedMarker& marker : registration.dropped_markers) {
-      map_.left_out[marker.marker_id] = marker.reason;
-    }
     for (const auto& [marker_id, points] : body) map_.left_out.erase(marker_id);
     map_.bodies.push_back(std::move(body));
+    return true;
   }
 
   std::optional<FormationEstimate> formation_;
@@ -222,6 +222,7 @@ class Mapper {
   MarkerAdjustmentOptions adjustment_;
   std::vector<DatabaseImage> images_;
   FrameCounts counts_;
+  std::set<int> often_seen_;  // ids that may get a place
   ClipMap map_;
 };
 

@@ -16,6 +16,16 @@ namespace {
 
 void Remove(int id, Ids* ids) { ids->erase(std::remove(ids->begin(), ids->end(), id), ids->end()); }
 
+// `name`, followed by underscores until none of `others` has that name.
+template <typename Named>
+std::string UnusedName(std::string name, const std::vector<Named>& others) {
+  while (std::any_of(others.begin(), others.end(),
+                     [&](const Named& other) { return other.name == name; })) {
+    name += "_";
+  }
+  return name;
+}
+
 class Corrector {
  public:
   Corrector(const ClipMap& map, const Layout& given) : map_(map), given_(given) {
@@ -148,15 +158,15 @@ class Corrector {
         part->marker_ids.insert(part->marker_ids.end(), unnamed.begin(), unnamed.end());
       }
     }
-    if (added_alone.empty()) return;
+    if (!added_alone.empty()) AddPart(std::move(added_alone));
+  }
+
+  // A part of its own, for markers that stand with none that the layout names.
+  void AddPart(Ids ids) {
     LayoutPart part;
-    part.name = "unnamed";
-    while (std::any_of(given_.parts.begin(), given_.parts.end(),
-                       [&](const LayoutPart& other) { return other.name == part.name; })) {
-      part.name += "_";
-    }
-    std::sort(added_alone.begin(), added_alone.end());
-    part.marker_ids = std::move(added_alone);
+    part.name = UnusedName("unnamed", given_.parts);
+    std::sort(ids.begin(), ids.end());
+    part.marker_ids = std::move(ids);
     proposal_.notes.push_back(fmt::format("part {}: NOT SURE where its markers belong", part.name));
     proposal_.layout.parts.push_back(std::move(part));
   }
@@ -167,11 +177,8 @@ class Corrector {
   }
 
   void AddLine(const Ids& row, LayoutPart* part) {
-    std::string name = fmt::format("h{}", part->horizontal.size() + 1);
-    while (std::any_of(part->horizontal.begin(), part->horizontal.end(),
-                       [&](const MarkerLine& line) { return line.name == name; })) {
-      name += "_";
-    }
+    const std::string name =
+        UnusedName(fmt::format("h{}", part->horizontal.size() + 1), part->horizontal);
     part->horizontal.push_back({name, row});
     proposal_.contradictions.push_back(
         fmt::format("markers {} stand on a line that the layout does not name", IdRanges(row)));

@@ -5,7 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"

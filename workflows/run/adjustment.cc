@@ -53,17 +53,7 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
           {}};
 }
 
-AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
-                                   const CornerErrors& corner_errors, Model* model) {
-  LogInfo("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
-          model->points3D.size());
-  MarkerAdjustmentSummary summary;
-  try {
-    summary = AdjustWithMarkers(options, layout, corner_errors, model);
-  } catch (const DataError& error) {
-    if (!options.find_camera) throw;
-    throw DataError(error.what() + std::string(kOrWithCalibration));
-  }
+void LogMarkersSummary(const MarkerAdjustmentSummary& summary) {
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   LogInfo(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
@@ -102,6 +92,20 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   for (const auto& [camera_id, camera] : summary.cameras) {
     LogInfo("camera found: {}", DescribeCamera(camera));
   }
+}
+
+AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                   const CornerErrors& corner_errors, Model* model) {
+  LogInfo("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
+          model->points3D.size());
+  MarkerAdjustmentSummary summary;
+  try {
+    summary = AdjustWithMarkers(options, layout, corner_errors, model);
+  } catch (const DataError& error) {
+    if (!options.find_camera) throw;
+    throw DataError(error.what() + std::string(kOrWithCalibration));
+  }
+  LogMarkersSummary(summary);
   return {summary.error_before_px,
           summary.error_after_px,
           static_cast<int>(summary.removed.size()),

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -250,19 +251,14 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
 }
 
 int BestRow(const std::vector<SweepRow>& rows) {
-  int best = -1;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!rows[i].reason.empty()) continue;
-    if (best >= 0) {
-      const SweepRow& known = rows[static_cast<std::size_t>(best)];
-      const double gain = Completeness(rows[i]) - Completeness(known);
-      const bool is_better = gain > 0 || (gain == 0 && rows[i].shape.area_error_mm2.mean <
-                                                           known.shape.area_error_mm2.mean);
-      if (!is_better) continue;
-    }
-    best = static_cast<int>(i);
-  }
-  return best;
+  const auto rank = [](const SweepRow& row) {
+    return std::tuple(row.reason.empty(), Completeness(row), -row.shape.area_error_mm2.mean);
+  };
+  const auto best =
+      std::max_element(rows.begin(), rows.end(),
+                       [&](const SweepRow& a, const SweepRow& b) { return rank(a) < rank(b); });
+  if (best == rows.end() || !best->reason.empty()) return -1;
+  return static_cast<int>(best - rows.begin());
 }
 
 void WriteSweepCsv(const std::vector<SweepRow>& rows, std::ostream& out) {

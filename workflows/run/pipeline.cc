@@ -103,13 +103,15 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
   return narrowed;
 }
 
+ImportReport ImportWithProgress(const MarkerImporterOptions& options, const std::string& what) {
+  Progress progress(what);
+  return ImportMarkers(options, [&progress](int done, int total, const std::string& message) {
+    progress.Update(done, total, message);
+  });
+}
+
 ImportReport ImportImages(const MarkerImporterOptions& options) {
-  Progress progress("detecting markers");
-  const ImportReport report =
-      ImportMarkers(options, [&progress](int done, int total, const std::string& message) {
-        progress.Update(done, total, message);
-      });
-  ClearProgressLine();
+  const ImportReport report = ImportWithProgress(options, "detecting markers");
   LogInfo("{} images added, {} were in the database before, {} markers found",
           report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_frames_damaged > 0) {

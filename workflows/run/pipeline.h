@@ -31,7 +31,10 @@ struct SeedResult {
 // registration, and if the frames count as unordered.
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration);
 
-// ImportMarkers() with a progress bar; logs what was found and warns of anything unusual.
+// ImportMarkers() with a progress bar, which `what` names.
+ImportReport ImportWithProgress(const MarkerImporterOptions& options, const std::string& what);
+
+// ImportWithProgress(); then logs what was found and warns of anything unusual.
 ImportReport ImportImages(const MarkerImporterOptions& options);
 
 // Throws InputError, naming both dictionaries, if the layout and the database have different ones.

@@ -88,10 +88,7 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
     if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);
     out << '\n';
   }
-  for (const RigNumbers& rig : report.rigs) {
-    const std::string text = RigText(rig);
-    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
-  }
+  PrintRigs(report.rigs, out);
   for (const MissingSection& missing : report.missing) {
     WriteFormatted(out, "section {} {} is missing: {}\n", missing.part, missing.name,
                    missing.reason);

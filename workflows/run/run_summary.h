@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "exporters/formats/metrics_report.h"
+#include "exporters/report/report_data.h"
 #include "exporters/report/verdict.h"
 #include "exporters/shape_exporter.h"
 #include "importer/camera/calibration_writer.h"
+#include "reconstruct/registration/registration.h"
 #include "workflows/run/adjustment.h"
-#include "workflows/run/pipeline.h"
 #include "workflows/run/workspace.h"
 
 namespace velamap {

@@ -80,6 +80,20 @@ std::string LuffText(const Estimate& estimate_m, const char* positive, const cha
                      value_mm < 0 ? negative : positive);
 }
 
+// Empty if no number is known.
+std::string RigText(const RigNumbers& rig) {
+  std::string text;
+  if (rig.luff_bend_m && rig.luff_sag_m) {
+    text = fmt::format("luff bent {} and {}", LuffText(*rig.luff_bend_m, "forwards", "aft"),
+                       LuffText(*rig.luff_sag_m, "to leeward", "to windward"));
+  }
+  if (rig.sheeting_angle_deg) {
+    text += fmt::format("{}sheeting angle {} deg", text.empty() ? "" : ", ",
+                        WithSigma(rig.sheeting_angle_deg->value, 1.0, *rig.sheeting_angle_deg));
+  }
+  return text.empty() ? text : rig.part + ", " + text;
+}
+
 // Prints the frame, the sections of a sail, and the surfaces.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   WriteFormatted(out, "frame: {}\n", report.frame.name);
@@ -97,10 +111,7 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
                    RangeText(sections, camber_percent),
                    twists.empty() ? "no twist" : fmt::format("twist {} deg", twists));
   }
-  for (const RigNumbers& rig : report.sail.sections.rigs) {
-    const std::string text = RigText(rig);
-    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
-  }
+  PrintRigs(report.sail.sections.rigs, out);
   for (const std::string& note : report.sail.sections.notes) {
     WriteFormatted(out, "section_note: {}\n", note);
   }
@@ -146,17 +157,11 @@ std::string ErrorText(const Statistics& statistics) {
                      statistics.min, statistics.max);
 }
 
-std::string RigText(const RigNumbers& rig) {
-  std::string text;
-  if (rig.luff_bend_m && rig.luff_sag_m) {
-    text = fmt::format("luff bent {} and {}", LuffText(*rig.luff_bend_m, "forwards", "aft"),
-                       LuffText(*rig.luff_sag_m, "to leeward", "to windward"));
+void PrintRigs(const std::vector<RigNumbers>& rigs, std::ostream& out) {
+  for (const RigNumbers& rig : rigs) {
+    const std::string text = RigText(rig);
+    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
   }
-  if (rig.sheeting_angle_deg) {
-    text += fmt::format("{}sheeting angle {} deg", text.empty() ? "" : ", ",
-                        WithSigma(rig.sheeting_angle_deg->value, 1.0, *rig.sheeting_angle_deg));
-  }
-  return text.empty() ? text : rig.part + ", " + text;
 }
 
 std::string ShellQuote(const std::string& text) {

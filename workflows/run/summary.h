@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"
-#include "workflows/run/pipeline.h"
+#include "reconstruct/registration/registration.h"
 
 namespace velamap {
 
@@ -20,9 +21,6 @@ std::vector<ReportLeftOut> NamedById(const std::vector<DroppedMarker>& markers);
 
 // `mean 0.120, std 0.050, median 0.100, min 0.010, max 0.600`.
 std::string ErrorText(const Statistics& statistics);
-
-// Bend and sag of the luff and the sheeting angle in words; empty if none is known.
-std::string RigText(const RigNumbers& rig);
 
 // Quotes a path for a shell where that is needed.
 std::string ShellQuote(const std::string& text);
@@ -38,6 +36,9 @@ void WarnOfMissingSections(const SectionReport& sections);
 
 // Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
+
+// Prints bend and sag of the luff and the sheeting angle of each sail, where they are known.
+void PrintRigs(const std::vector<RigNumbers>& rigs, std::ostream& out);
 
 // Prints the rolling shutter if it was estimated.
 void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out);

@@ -27,7 +27,6 @@ if [[ $quick -eq 1 ]]; then
 else
   num_frames=120
 fi
-repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
 keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
   distance_sigma_mm distance_after_scaling_mm_rms distance_after_scaling_sigma_mm

@@ -24,8 +24,7 @@ scale_error_percent,rms_to_truth_mm" >"$csv"
 # mean_part_metric KEY RUN...: prints the mean over the runs of a metric of the part `board`.
 mean_part_metric() {
   local key="$1" run
-  for run in "${@:2}"; do table_metric "$run" parts part board "$key"; done |
-    awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'
+  for run in "${@:2}"; do table_metric "$run" parts part board "$key"; done | mean
 }
 
 row() {

@@ -17,12 +17,11 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 read_draw_arguments "$@"
 begin_study camera_draws "${rest[@]}"
 clip_corners="$(find_program CLIP_CORNERS clip_corners tests/tools/clip_corners)"
-folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 6 : 200)); fi
 csv="$work/camera_draws.csv"
 
-mapfile -t draws < <(awk -f "$folder/random.awk" -f "$folder/draw_cameras.awk" -v seed="$seed" -v num_draws="$num_draws" \
-  -v quick="$quick")
+mapfile -t draws < <(awk -f "$studies/random.awk" -f "$studies/draw_cameras.awk" -v seed="$seed" \
+  -v num_draws="$num_draws" -v quick="$quick")
 IFS=, read -ra names <<<"${draws[0]}"
 results=(exit_code side_px side_bias_px side_bias_percent corner_error_px corner_error_over_sigma
   num_detections num_false num_images num_markers scale_error_percent scale_sigma_percent
@@ -69,19 +68,16 @@ run_draw() {
   fi
 }
 
-# corner_value RUN KEY: prints a value of the comparison of the corners with the truth.
-corner_value() { awk -v key="$2:" '$1 == key { print $2 }' "$runs/$1/corners.txt"; }
-
 # result_row NAME SECONDS: prints the results of a draw as a row.
 result_row() {
   local error sigma key
   error="$(metric "$1" scale_error_percent)"
   sigma="$(awk -F, '$1 == "" && $3 == "scale_sigma_percent" { print $4 }' \
     "$runs/$1/workspace/shape/metrics.csv" 2>/dev/null || true)"
-  printf '%s' "$(cat "$runs/$1/exit_code.txt"),$(awk '$1 == "side_px:" { print $2 }' "$runs/$1/render.txt")"
+  printf '%s' "$(cat "$runs/$1/exit_code.txt"),$(value_in "$runs/$1/render.txt" side_px)"
   for key in side_bias_px side_bias_percent corner_error_px corner_error_over_sigma num_markers \
     num_false; do
-    printf ',%s' "$(corner_value "$1" "$key")"
+    printf ',%s' "$(value_in "$runs/$1/corners.txt" "$key")"
   done
   printf ',%s' "$(log_value "$1" images)" "$(metric "$1" num_markers)" "$error" "$sigma" \
     "$(awk -v e="$error" -v s="$sigma" 'BEGIN { if (e != "" && s > 0) printf "%.3f", e / s }')" \
@@ -127,5 +123,5 @@ for ((i = 0; i < num_running; i++)); do wait -n; done
 rm "$known"
 { echo "$header"; sed 1d "$csv" | sort -t, -k1,1n; } >"$csv.sorted"
 mv "$csv.sorted" "$csv"
-awk -f "$folder/summarize_draws.awk" "$csv" >"$work/camera_draws_summary.csv"
+awk -f "$studies/summarize_draws.awk" "$csv" >"$work/camera_draws_summary.csv"
 finish "$work/camera_draws_summary.csv"

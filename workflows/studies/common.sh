@@ -16,8 +16,12 @@ fail() {
   exit 2
 }
 
+# The folders of the studies and of the repository.
+studies="$(dirname "${BASH_SOURCE[0]}")"
+# shellcheck disable=SC2034  # some studies use it
+repository="$(realpath "$studies/../..")"
 # shellcheck source-path=SCRIPTDIR source=../find_program.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../find_program.sh"
+source "$studies/../find_program.sh"
 
 # begin_study NAME "$@": parses the common arguments [--quick] [WORK_FOLDER]; sets study, quick,
 # work, clips, runs, sail, velamap and render_clip; and empties the folder of the study's runs.
@@ -184,12 +188,20 @@ table_metric() {
     $3 == key && row != "" && $2 == row { print $4 }' "$file"
 }
 
+# value_in FILE KEY: prints the number after `KEY: ` in what a program has printed.
+value_in() { sed -n "s/^$2: \([^ ]*\).*/\1/p" "$1"; }
+
+# num_true_markers CLIP: prints the number of markers of a rendered clip.
+num_true_markers() { sed 1d "$clips/$1/truth.csv" | cut -d, -f1 | sort -u | wc -l; }
+
+# mean: prints the mean of the numbers on stdin, or nothing if there are none.
+mean() { awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'; }
+
 # mean_metric KEY RUN...: prints the mean over the reconstructions that have the metric (section
 # 4.3.3 of the thesis).
 mean_metric() {
   local key="$1" run
-  for run in "${@:2}"; do metric "$run" "$key"; done |
-    awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'
+  for run in "${@:2}"; do metric "$run" "$key"; done | mean
 }
 
 # The metrics in a row about the sail, and the header of such a table.

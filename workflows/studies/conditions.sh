@@ -56,7 +56,7 @@ motion() {
     names+=("$runs/motion_$1_$frame/shape/shape.csv")
   done
   if [[ ! -f "${names[0]}" || ! -f "${names[1]}" ]]; then return; fi
-  awk -f "$(dirname "${BASH_SOURCE[0]}")/align_part.awk" -v part=hull "${names[@]}" |
+  awk -f "$studies/align_part.awk" -v part=hull "${names[@]}" |
     sed "1d; s/^/$1,/" >>"$motion_csv"
 }
 motion flapping_long flapping "${long[@]}"

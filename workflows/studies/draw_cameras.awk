@@ -75,8 +75,7 @@ BEGIN {
   header = "draw,class,curve"
   for (i = 1; i <= num_names; i++) header = header "," names[i]
   print header
-  state = 1 + (48271 * seed) % 2147483645
-  for (i = 0; i < 20; i++) uniform()
+  begin_random(seed)
   for (draw = 0; draw < num_draws; draw++) {
     k = draw % num_classes + 1
     curve = curves[int(draw / num_classes) % num_curves + 1]

@@ -30,8 +30,7 @@ function draw_scene(scene, focal, width,    distance, wide, scale) {
 BEGIN {
   split("sail walls board", scenes, " ")
   print "draw,lens,scene,width,focal_widths,focal_px,cx,cy,d1,d2,d3,d4,options"
-  state = 1 + (48271 * seed) % 2147483645
-  for (i = 0; i < 20; i++) uniform()
+  begin_random(seed)
   for (draw = 0; draw < num_draws; draw++) {
     scene = scenes[draw % 3 + 1]
     lens = draw % 4 == 3 ? "fisheye" : "brown"

@@ -31,7 +31,7 @@ seen() {
     "$clip_corners" --clip_path "$clips/$name" --database_path "$clips/$name/database.db" \
       >"$found" 2>/dev/null || echo "num_markers: 0" >"$found"
     awk -v OFS=, -v series="$1" -v value="$2" -v distance="$distance" \
-      -v possible="$((10 * $(sed 1d "$clips/$name/truth.csv" | cut -d, -f1 | sort -u | wc -l)))" '
+      -v possible="$((10 * $(num_true_markers "$name")))" '
       { of[$1] = $2 }
       END {
         print series, value, distance, of["side_px:"], 100 * (of["num_markers:"] - of["num_false:"]) / possible,

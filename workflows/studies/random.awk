@@ -5,4 +5,9 @@ function uniform() {
   state = (16807 * state) % 2147483647
   return state / 2147483647
 }
+# Begins the numbers of a seed. The first ones of neighbouring seeds are alike, so they are left out.
+function begin_random(seed,    i) {
+  state = 1 + (48271 * seed) % 2147483645
+  for (i = 0; i < 20; i++) uniform()
+}
 function between(low, high) { return low + (high - low) * uniform() }

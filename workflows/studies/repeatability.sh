@@ -10,7 +10,6 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study repeatability "$@"
-repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 csv="$work/repeatability.csv"
 echo "object,num_points,difference_mm,predicted_mm,ratio,scale_difference_percent" >"$csv"
 

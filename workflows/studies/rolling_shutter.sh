@@ -17,7 +17,7 @@ echo "clip,scene,shutter_ms,shake_deg,sail_motion_m,found_ms,sigma_ms,distance_w
   >"$csv"
 
 draw_clips() {  # NUM_CLIPS
-  awk -v num_clips="$1" -v state=20201 "$(cat "$(dirname "${BASH_SOURCE[0]}")/random.awk")"'
+  awk -v num_clips="$1" -v state=20201 "$(cat "$studies/random.awk")"'
     BEGIN {
       for (i = 1; i <= num_clips; i++) {
         shutter = i % 3 == 0 ? 0 : (uniform() < 0.25 ? -1 : 1) * (4 + 26 * uniform())

@@ -9,7 +9,6 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study sample_project "$@"
-repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 csv="$work/sample_project.csv"
 echo "object,table,row,key,value" >"$csv"
 

@@ -22,9 +22,6 @@ fi
 csv="$work/shooting.csv"
 echo "series,width_px,distance_m,motion_px,side_px,found_percent,corner_error_px,planned_distance_sigma_mm,distance_sigma_mm,distance_mm,planned_shape_sigma_mm,shape_sigma_mm,shape_mm,planned_marker_sigma_mm,marker_sigma_mm" >"$csv"
 
-# value_in FILE KEY: prints the number after `KEY: `.
-value_in() { sed -n "s/^$2: \([^ ]*\).*/\1/p" "$1"; }
-
 # seen SERIES WIDTH DISTANCE MOTION: writes a row for ten frontal views that show every marker.
 seen() {
   local name="shooting_$1_$2_$3_$4" frames=10
@@ -36,7 +33,7 @@ seen() {
     -v side="$(value_in "$runs/$name.txt" side_px)" \
     -v found="$(value_in "$runs/$name.txt" num_markers)" \
     -v error="$(value_in "$runs/$name.txt" corner_error_px)" \
-    -v possible="$((frames * ($(sed 1d "$clips/$name/truth.csv" | cut -d, -f1 | sort -u | wc -l))))" \
+    -v possible="$((frames * $(num_true_markers "$name")))" \
     'BEGIN { print series, width, distance, motion, side, 100 * found / possible, error, "", "", "", "", "", "", "", "" }' \
     >>"$csv"
 }

@@ -11,7 +11,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 read_draw_arguments "$@"
 begin_study unknown_cameras "${rest[@]}"
-folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 4 : 24)); fi
 num_frames=$((quick ? 16 : 30))
 
@@ -46,8 +45,8 @@ found_focal() {
 }
 
 csv="$work/unknown_cameras.csv"
-mapfile -t draws < <(awk -f "$folder/random.awk" -f "$folder/draw_lenses.awk" -v seed="$seed" -v num_draws="$num_draws" \
-  -v quick="$quick")
+mapfile -t draws < <(awk -f "$studies/random.awk" -f "$studies/draw_lenses.awk" -v seed="$seed" \
+  -v num_draws="$num_draws" -v quick="$quick")
 echo "draw,lens,scene,focal_widths,model,focal_px,focal_sigma_px,focal_error_percent,\
 distance_after_scaling_mm,distance_after_scaling_calibrated_mm,ratio,scale_error_percent,\
 scale_error_calibrated_percent" >"$csv"

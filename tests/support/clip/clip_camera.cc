@@ -11,17 +11,9 @@
 namespace velamap {
 namespace {
 
-// Sums of sines with random phases; std::mt19937's numbers are the same everywhere.
-class Sway {
- public:
-  explicit Sway(std::uint32_t seed) : random_(seed) {}
-
-  // A phase for each swaying quantity, to be drawn in a fixed order.
-  double Phase() { return 2 * kPi * (random_() / 4294967296.0); }
-
- private:
-  std::mt19937 random_;
-};
+// The phase of a swaying quantity. Phases are drawn in a fixed order, and the numbers of
+// std::mt19937 are the same everywhere.
+double DrawPhase(std::mt19937* random) { return 2 * kPi * ((*random)() / 4294967296.0); }
 
 double Wave(double time_s, double period_s, double phase_rad) {
   return std::sin(2 * kPi * time_s / period_s + phase_rad);
@@ -30,8 +22,8 @@ double Wave(double time_s, double period_s, double phase_rad) {
 // Fast turns of the camera about its three axes.
 class Shake {
  public:
-  Shake(double amplitude_deg, Sway* sway) : amplitude_rad_(kRadPerDeg * amplitude_deg) {
-    for (double& phase : phases_) phase = sway->Phase();
+  Shake(double amplitude_deg, std::mt19937* random) : amplitude_rad_(kRadPerDeg * amplitude_deg) {
+    for (double& phase : phases_) phase = DrawPhase(random);
   }
 
   Rigid3 CamFromCam(double time_s) const {
@@ -67,10 +59,10 @@ Camera MakeClipCamera(bool wide_angle, int width_px) {
 CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
                      double camera_height_m, double own_drift_deg) {
   const double drift_deg = options.drift_deg > 0 ? options.drift_deg : own_drift_deg;
-  Sway sway(options.seed);
-  const double turn = sway.Phase(), range = sway.Phase(), heave = sway.Phase();
-  const double pan = sway.Phase(), tilt = sway.Phase(), roll = sway.Phase();
-  const Shake shake(options.shake_deg, &sway);
+  std::mt19937 random(options.seed);
+  const double turn = DrawPhase(&random), range = DrawPhase(&random), heave = DrawPhase(&random);
+  const double pan = DrawPhase(&random), tilt = DrawPhase(&random), roll = DrawPhase(&random);
+  const Shake shake(options.shake_deg, &random);
   return [=](double frame) {
     const double time_s = frame / options.fps;
     const double part = options.num_frames > 1 ? frame / (options.num_frames - 1.0) : 0.5;
@@ -89,12 +81,13 @@ CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m
 }
 
 CameraPath MakeBoardMotion(const ClipOptions& options) {
-  Sway sway(options.seed);
-  const double phase_x = sway.Phase(), phase_y = sway.Phase(), phase_z = sway.Phase();
+  std::mt19937 random(options.seed);
+  const double phase_x = DrawPhase(&random), phase_y = DrawPhase(&random);
+  const double phase_z = DrawPhase(&random);
   const bool upright = options.motion >= 'e';
   const int kind = (options.motion - 'a') % 4;  // at rest, about y, about x, about the centre
   const double still = 0.3, swing = 38;         // degrees
-  const Shake shake(options.shake_deg, &sway);
+  const Shake shake(options.shake_deg, &random);
   return [=](double frame) {
     const double time_s = frame / options.fps;
     const double about_y =

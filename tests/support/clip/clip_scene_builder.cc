@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <opencv2/aruco.hpp>
 
 #include "importer/base/error.h"
 #include "importer/camera/calibration.h"
@@ -136,9 +135,7 @@ int ClipSceneBuilder::AddMarker(const Ground& ground, const std::string& part,
   marker.part = part;
   marker.ground_gray = GroundGray(ground);
   const int num_cells = CellsPerSide(scene_.dictionary, scene_.layout.border_bits);
-  cv::aruco::drawMarker(scene_.dictionary.aruco, marker.marker_id, num_cells, marker.cells,
-                        scene_.layout.border_bits);
-  marker.cells /= 255;
+  marker.cells = MarkerCells(scene_.dictionary, marker.marker_id, scene_.layout.border_bits) / 255;
   const auto vertex_at = [&](double right, double up) {
     const Eigen::Vector2d offset_m = length_m * Eigen::Vector2d(right, up);
     const Eigen::Vector2d uv_before = WalkOnSurface(ground.before, uv, offset_m);

@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "importer/base/error.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {
@@ -24,11 +25,7 @@ namespace {
 
 }  // namespace
 
-void ClipWriterOptions::Check() const {
-  if (crf < 0 || crf > 51) {
-    throw InputError(fmt::format("--crf: {} is out of range; give 0 to 51", crf));
-  }
-}
+void ClipWriterOptions::Check() const { CheckOptionRange("crf", crf, 0, 51); }
 
 ClipWriter::ClipWriter(const std::filesystem::path& folder, const ClipWriterOptions& options)
     : options_(options),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "importer/geometry/quad.h"
+
 namespace velamap {
 namespace {
 
@@ -16,21 +18,15 @@ double AreaUpTo(double x, double x0, double x1) {
 }  // namespace
 
 double SignedArea(const ImageQuad& quad) {
-  const Eigen::Vector2d a = quad[2] - quad[0], b = quad[3] - quad[1];
-  return 0.5 * (a.x() * b.y() - a.y() * b.x());
+  return 0.5 * Cross(quad[2] - quad[0], quad[3] - quad[1]);
 }
 
 CoverageImage::CoverageImage(int width_px, int height_px)
     : changes_(height_px, width_px, CV_32FC2, cv::Scalar::all(0)) {}
 
 void CoverageImage::Add(const ImageQuad& quad, double gray, double alpha) {
-  double low_y = quad[0].y(), high_y = low_y, low_x = quad[0].x();
-  for (const Eigen::Vector2d& corner : quad) {
-    low_y = std::min(low_y, corner.y());
-    high_y = std::max(high_y, corner.y());
-    low_x = std::min(low_x, corner.x());
-  }
-  if (high_y <= 0 || low_y >= changes_.rows || low_x >= changes_.cols) return;
+  const Box box = BoundingBox(quad);
+  if (box.max.y() <= 0 || box.min.y() >= changes_.rows || box.min.x() >= changes_.cols) return;
   const cv::Vec2f weight(static_cast<float>(gray), static_cast<float>(alpha));
   for (std::size_t i = 0; i < quad.size(); ++i) {
     // Upward edges of a clockwise quad are its left ones: the picture changes by + weight there.

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
@@ -27,9 +26,8 @@ class Print {
       : num_cells_(CellsPerSide(dictionary, border_bits)),
         ring_(options.quiet_zone_cells),
         surround_(options.surround_cells) {
-    cv::Mat cells;
-    cv::aruco::drawMarker(dictionary.aruco, marker_id, num_cells_, cells, border_bits);
-    cells.convertTo(cells_, CV_32F, (options.white - options.black) / 255.0, options.black);
+    MarkerCells(dictionary, marker_id, border_bits)
+        .convertTo(cells_, CV_32F, (options.white - options.black) / 255.0, options.black);
     black_ = static_cast<float>(options.black);
     white_ = static_cast<float>(options.white);
   }
@@ -100,25 +98,22 @@ cv::Rect BoundingBox(const Camera& camera, const PlacedMarkerInCam& marker, cons
   constexpr int kSteps = 8;
   const auto& corners = marker.corners_in_cam;
   const double margin = print.margin() / print.num_cells();
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
-  Eigen::Vector2d high = -low;
+  Eigen::AlignedBox2d touched;
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; j <= kSteps; ++j) {
       const double u = -margin + (1 + 2 * margin) * i / kSteps;
       const double v = -margin + (1 + 2 * margin) * j / kSteps;
       const auto x = ImageFromCam(
           camera, corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0]));
-      if (!x) continue;
-      low = low.cwiseMin(*x);
-      high = high.cwiseMax(*x);
+      if (x) touched.extend(*x);
     }
   }
   const Eigen::Vector2d size(camera.width_px, camera.height_px);
   const auto clamped = [&](const Eigen::Vector2d& x) {
     return x.cwiseMax(Eigen::Vector2d::Zero()).cwiseMin(size).eval();
   };
-  low = clamped(low - Eigen::Vector2d::Constant(2));
-  high = clamped(high + Eigen::Vector2d::Constant(2));
+  const Eigen::Vector2d low = clamped(touched.min() - Eigen::Vector2d::Constant(2));
+  const Eigen::Vector2d high = clamped(touched.max() + Eigen::Vector2d::Constant(2));
   const cv::Point first(static_cast<int>(low.x()), static_cast<int>(low.y()));
   return {first, cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
 }

@@ -86,21 +86,18 @@ std::optional<Patch> MakePatch(const std::array<const Vertex*, 4>& corners) {
   return patch;
 }
 
-std::vector<Vertex> ProjectVertices(const FrameView& view, const ClipVertex* vertices,
-                                    std::size_t count) {
+template <typename Vertices>
+std::vector<Vertex> ProjectVertices(const FrameView& view, const Vertices& vertices) {
   std::vector<Vertex> projected;
-  projected.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    projected.push_back(view.See(vertices[i]));
-  }
+  projected.reserve(vertices.size());
+  for (const ClipVertex& vertex : vertices) projected.push_back(view.See(vertex));
   return projected;
 }
 
 // Calls draw(column, row, patch) for every patch that faces the camera.
 template <typename Draw>
 void ForEachPatch(const FrameView& view, const ClipSheet& sheet, const Draw& draw) {
-  const std::vector<Vertex> vertices =
-      ProjectVertices(view, sheet.vertices.data(), sheet.vertices.size());
+  const std::vector<Vertex> vertices = ProjectVertices(view, sheet.vertices);
   const int stride = sheet.num_columns + 1;
   for (int row = 0; row < sheet.num_rows; ++row) {
     for (int column = 0; column < sheet.num_columns; ++column) {
@@ -130,8 +127,7 @@ cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view,
     });
   }
   for (const ClipPaint& paint : scene.paint) {
-    const std::vector<Vertex> corners =
-        ProjectVertices(view, paint.corners.data(), paint.corners.size());
+    const std::vector<Vertex> corners = ProjectVertices(view, paint.corners);
     const auto patch = MakePatch({&corners[0], &corners[1], &corners[2], &corners[3]});
     if (patch) image.Add(patch->quad, patch->shade * paint.gray_change, 0.0);
   }
@@ -214,10 +210,34 @@ void Compose(const cv::Mat& surfaces, cv::Mat* image) {
   }
 }
 
+// One patch of mirrored sunlight around `middle`. Its glare falls off as exp(-r^2) in the frame of
+// the patch. Nothing is drawn of a patch that is seen edge-on.
+void DrawReflection(const Eigen::Vector2d& middle, const Eigen::Matrix2d& image_from_patch,
+                    const cv::Mat& surfaces, cv::Mat* image) {
+  constexpr double kMaxRadius2 = 6;  // beyond it nothing is seen of a patch
+  if (std::abs(image_from_patch.determinant()) < 1) return;
+  const Eigen::Vector2d reach = std::sqrt(kMaxRadius2) * image_from_patch.rowwise().norm();
+  const cv::Rect box = cv::Rect(cv::Point(middle.x() - reach.x(), middle.y() - reach.y()),
+                                cv::Point(middle.x() + reach.x(), middle.y() + reach.y())) &
+                       cv::Rect({}, image->size());
+  const Eigen::Matrix2d patch_from_image = image_from_patch.inverse();
+  for (int row = box.y; row < box.y + box.height; ++row) {
+    cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
+    const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
+    for (int column = box.x; column < box.x + box.width; ++column) {
+      const Eigen::Vector2d offset(column + 0.5 - middle.x(), row + 0.5 - middle.y());
+      const double radius2 = (patch_from_image * offset).squaredNorm();
+      if (radius2 > kMaxRadius2) continue;
+      const double cover = std::min(1.0F, sums[column][1]);
+      const double glare = cover * std::min(1.0, 1.4 * std::exp(-radius2));
+      pixels[column] += static_cast<float>(glare) * (cv::Vec3f::all(252) - pixels[column]);
+    }
+  }
+}
+
 // Mirrored sunlight: patches that wander over the last sheet (the sail) as the camera moves.
 void AddReflections(const ClipScene& scene, const FrameView& view, int num_reflections,
                     const cv::Mat& surfaces, cv::Mat* image) {
-  constexpr double kMaxRadius2 = 6;  // beyond it nothing is seen of a patch
   const ClipSheet& sheet = scene.sheets.back();
   const Eigen::Vector3d eye_m = Inverse(view.cam_from_world()).translation;
   const double turn = std::atan2(eye_m.x(), -eye_m.y());
@@ -234,24 +254,7 @@ void AddReflections(const ClipScene& scene, const FrameView& view, int num_refle
     if (!middle || !right || !up) continue;
     Eigen::Matrix2d image_from_patch;
     image_from_patch << *right - *middle, *up - *middle;
-    if (std::abs(image_from_patch.determinant()) < 1) continue;
-    const Eigen::Vector2d reach = std::sqrt(kMaxRadius2) * image_from_patch.rowwise().norm();
-    const cv::Rect box = cv::Rect(cv::Point(middle->x() - reach.x(), middle->y() - reach.y()),
-                                  cv::Point(middle->x() + reach.x(), middle->y() + reach.y())) &
-                         cv::Rect({}, image->size());
-    const Eigen::Matrix2d patch_from_image = image_from_patch.inverse();
-    for (int row = box.y; row < box.y + box.height; ++row) {
-      cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
-      const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
-      for (int column = box.x; column < box.x + box.width; ++column) {
-        const Eigen::Vector2d offset(column + 0.5 - middle->x(), row + 0.5 - middle->y());
-        const double radius2 = (patch_from_image * offset).squaredNorm();
-        if (radius2 > kMaxRadius2) continue;
-        const double cover = std::min(1.0F, sums[column][1]);
-        const double glare = cover * std::min(1.0, 1.4 * std::exp(-radius2));
-        pixels[column] += static_cast<float>(glare) * (cv::Vec3f::all(252) - pixels[column]);
-      }
-    }
+    DrawReflection(*middle, image_from_patch, surfaces, image);
   }
 }
 

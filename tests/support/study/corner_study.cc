@@ -88,7 +88,7 @@ ClipScene MakeBentScene(const CornerCase& parameters, std::uint32_t seed) {
   // A little to the side and rolled, so that no side runs along the pixels.
   const Eigen::Quaterniond cam_from_world =
       Eigen::AngleAxisd(0.2 + 0.3 * seed, Eigen::Vector3d::UnitZ()) *
-      Eigen::AngleAxisd(0.5 * 180 * kRadPerDeg, Eigen::Vector3d::UnitX());
+      Eigen::AngleAxisd(90 * kRadPerDeg, Eigen::Vector3d::UnitX());
   scene.cam_from_world = [pose = Rigid3{cam_from_world, {0.001 * seed, 0, distance_m}}](double) {
     return pose;
   };
@@ -169,7 +169,7 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
 class ErrorSums {
  public:
   void Add(const QuadCorners& found, const QuadCorners& truth) {
-    const Eigen::Vector2d middle = 0.25 * (truth[0] + truth[1] + truth[2] + truth[3]);
+    const Eigen::Vector2d middle = QuadCenter(truth);
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       const Eigen::Vector2d error = found[i] - truth[i];
       outwards_ += error.dot((truth[i] - middle).normalized());

@@ -115,29 +115,51 @@ TEST(ClipMap, AnIdThatIsThereTwiceIsNamed) {
               testing::ElementsAre(HasSubstr("marker 7 occurs twice")));
 }
 
+// Lets the markers go their own way, with the given speed of rotation and in the given direction.
+void Move(const std::vector<int>& ids, double rad_per_frame, const Eigen::Vector3d& step_m,
+          SyntheticScene* scene) {
+  for (std::size_t i = 0; i < scene->frames.size(); ++i) {
+    const auto time = static_cast<double>(i);
+    const Rigid3 motion{Eigen::Quaterniond(Eigen::AngleAxisd(
+                            rad_per_frame * time, Eigen::Vector3d(1, 1, 0).normalized())),
+                        time * step_m + Eigen::Vector3d(0, 0, 0.01 * static_cast<double>(i % 5))};
+    for (MarkerDetection& marker : scene->frames[i].markers) {
+      if (std::count(ids.begin(), ids.end(), marker.marker_id) == 0) continue;
+      for (std::size_t c = 0; c < kNumCorners; ++c) {
+        const Eigen::Vector3d x = scene->x_in_world.at(marker.marker_id)[c + 1];
+        marker.corners_in_image_px[c] =
+            *ImageFromCam(scene->camera, scene->cam_from_world[i] * (motion * x));
+      }
+    }
+  }
+}
+
 TEST(ClipMap, WhatMovesAgainstTheRestIsABodyOfItsOwn) {
   // The markers of the last line go their own way, as a hull does below a sail.
   SyntheticScene scene = MakeSail();
   const std::vector<int>& last = scene.layout.parts[0].horizontal.back().marker_ids;
-  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    const Rigid3 motion{Eigen::Quaterniond(Eigen::AngleAxisd(
-                            0.03 * static_cast<double>(i), Eigen::Vector3d(1, 1, 0).normalized())),
-                        {0.02 * static_cast<double>(i), 0.0, 0.01 * static_cast<double>(i % 5)}};
-    for (MarkerDetection& marker : scene.frames[i].markers) {
-      if (std::count(last.begin(), last.end(), marker.marker_id) == 0) continue;
-      for (std::size_t c = 0; c < kNumCorners; ++c) {
-        const Eigen::Vector3d x = scene.x_in_world.at(marker.marker_id)[c + 1];
-        marker.corners_in_image_px[c] =
-            *ImageFromCam(scene.camera, scene.cam_from_world[i] * (motion * x));
-      }
-    }
-  }
+  Move(last, 0.03, {0.02, 0.0, 0.0}, &scene);
   const ClipMap map = MapOf(scene, Plain());
   ASSERT_EQ(map.bodies.size(), 2u);
   EXPECT_EQ(map.bodies[0].size(), 10u);
   std::vector<int> second;
   for (const auto& [id, points] : map.bodies[1]) second.push_back(id);
   EXPECT_EQ(second, last);
+}
+
+TEST(ClipMap, MarkersOfTooSmallABodyAreLeftOutWithAReason) {
+  // Three markers of the last line go one way, and the other two another way.
+  SyntheticScene scene = MakeSail();
+  const std::vector<int>& last = scene.layout.parts[0].horizontal.back().marker_ids;
+  Move({last[0], last[1], last[2]}, 0.03, {0.02, 0.0, 0.0}, &scene);
+  Move({last[3], last[4]}, -0.03, {-0.02, 0.0, 0.0}, &scene);
+  const ClipMap map = MapOf(scene, Plain());
+  for (const auto& [id, points] : scene.x_in_world) {
+    const bool is_on_body = std::any_of(map.bodies.begin(), map.bodies.end(),
+                                        [id = id](auto& body) { return body.count(id) > 0; });
+    EXPECT_NE(is_on_body, map.left_out.count(id) > 0) << id;
+    EXPECT_TRUE(is_on_body || map.sides.count(id) == 0) << id;
+  }
 }
 
 }  // namespace
