@@ -38,7 +38,6 @@ double RequireLength(const PrintOptions& options) {
     throw InputError(
         "--marker_length: missing; give the outer edge of the black squares in m, such as 0.1");
   }
-  CheckMarkerLength(*options.marker_length_m, "--marker_length");
   return 1000 * *options.marker_length_m;
 }
 
@@ -128,7 +127,6 @@ void PlanLooseMarkers(const PrintOptions& options, PrintPlan* plan) {
 }
 
 void PlanOneBoard(const PrintOptions& options, int num_cells, PrintPlan* plan) {
-  if (options.marker_length_m) RequireLength(options);
   plan->board = PlanBoard(
       options.arrangement == Arrangement::kBoard ? BoardKind::kGrid : BoardKind::kCharuco,
       options.grid, options.sheet.paper, options.marker_length_m, num_cells, options.first_id);
