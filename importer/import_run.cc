@@ -75,7 +75,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
     result.tracks = MarkerTracks{};
   }
   result.times = TakeStageTimes();
-  result.reading_s = frame->decode_s;
+  result.reading_s = frame->reading_s;
   return result;
 }
 
