@@ -166,8 +166,8 @@ class PatternPicture {
  private:
   using P = PatternParameters;
 
-  static constexpr double kMarginInCells =
-      0.75;  // how far outside the black square pixels are used
+  // How far outside the black square pixels are used.
+  static constexpr double kMarginInCells = 0.75;
 
   // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
   struct Place {
