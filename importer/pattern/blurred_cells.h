@@ -206,7 +206,7 @@ inline Blended BlendGround(const CellWeights& u, const CellWeights& v, int num_c
 // before the first column, after the last column, before the first row, after the last row.
 struct BlendedSurroundings {
   Blended blended;
-  std::array<FloatsArray<1>, 4> by_margin{};
+  FloatsArray<4> by_margin{};
 };
 
 // Blurs a pattern that is dark except in the outermost ring, the surroundings of the quiet zone.
@@ -239,11 +239,11 @@ inline BlendedSurroundings BlendOutermost(const Lightness& lightness, const Cell
       right -= internal::Choose(u.first + i == last, by_x);
     }
     const auto index = static_cast<std::size_t>(j);
-    surroundings.by_margin[0].groups[0] += left * v.value[index];
-    surroundings.by_margin[1].groups[0] += right * v.value[index];
+    surroundings.by_margin[0] += left * v.value[index];
+    surroundings.by_margin[1] += right * v.value[index];
     const Floats by_y = sums.value * v.by_x[index];
-    surroundings.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
-    surroundings.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
+    surroundings.by_margin[2] += internal::Choose(v.first + j == 0, by_y);
+    surroundings.by_margin[3] -= internal::Choose(v.first + j == last, by_y);
     return sums;
   });
   return surroundings;

@@ -156,7 +156,7 @@ class PatternPicture {
     jacobian[P::kSurround] = contrast * surroundings.blended.value;
     jacobian[P::kInnerLight] = contrast * inner;
     for (std::size_t i = 0; i < 4; ++i) {
-      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i].groups[0];
+      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i];
     }
     if (!model_.tone->IsLinear()) {
       for (Floats& derivative : jacobian) derivative *= slope;
