@@ -21,7 +21,7 @@ namespace velamap {
 constexpr int kRing = 2;             // quiet zone, then its surroundings
 constexpr int kMaxRingedCells = 32;  // along a side, with the rings
 
-// The cell of column i and row j is at (j + kRing, i + kRing); 0 for dark, 1 for light.
+// The cell of column i and row j is at (j + kRing, i + kRing).
 using Lightness = Eigen::Matrix<float, kMaxRingedCells, kMaxRingedCells, Eigen::RowMajor>;
 
 // Bit i + kRing of the number at j + kRing is set where the cell of column i and row j is light.
@@ -209,7 +209,7 @@ struct BlendedSurroundings {
   FloatsArray<4> by_margin{};
 };
 
-// Blurs a pattern that is dark except in the outermost ring, the surroundings of the quiet zone.
+// Blurs a pattern that is zero except in the outermost ring, the surroundings of the quiet zone.
 inline BlendedSurroundings BlendOutermost(const Lightness& lightness, const CellWeights& u,
                                           const CellWeights& v, int num_cells) {
   std::array<const float*, kLanes> corners;
