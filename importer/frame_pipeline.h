@@ -24,7 +24,7 @@ struct FrameResult {
   PriorShapeAgreement prior_shape_agreement;  // of the markers that were found without it
   std::optional<MarkerTracks> tracks;         // of a video, after this frame
   ImportTimes times;                          // of the thread that processed it
-  double reading_s = 0.0;                     // Frame::decode_s
+  double reading_s = 0.0;                     // Frame::reading_s
 };
 
 // Reads all frames of `source`, calls `process` for each on up to `num_threads` threads (frame_idx

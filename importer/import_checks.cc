@@ -203,25 +203,23 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
   }
   const std::vector<DictionaryHint> hints =
       SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
-  const double rate = static_cast<double>(report.num_markers + report.num_rejected) /
-                      std::max(report.num_frames_read, 1);
+  const int num_found = report.num_markers + report.num_rejected;
+  const double rate = static_cast<double>(num_found) / std::max(report.num_frames_read, 1);
   const bool is_convincing =
       !hints.empty() && static_cast<double>(hints.front().num_markers) >=
                             kConvincingRatio * rate * hints.front().num_images;
+  const std::string wanted = dictionary_name + (options.detection.inverted ? " (inverted)" : "");
   if (is_convincing) {
-    throw DataError(fmt::format("{}: {} marker of {}{} found in {} frames; found with {}",
-                                options.image_path,
-                                report.num_markers + report.num_rejected > 0 ? "hardly any" : "no",
-                                dictionary_name, options.detection.inverted ? " (inverted)" : "",
+    throw DataError(fmt::format("{}: {} marker of {} found in {} frames; found with {}",
+                                options.image_path, num_found > 0 ? "hardly any" : "no", wanted,
                                 report.num_frames_read, DescribeHints(hints)));
   }
   if (report.num_markers > 0) return;
   if (report.num_rejected > 0) ThrowAllRejected(options, report);
   throw DataError(fmt::format(
-      "{}: no marker of {}{} found in {} frames; no predefined dictionary finds more: check focus, "
+      "{}: no marker of {} found in {} frames; no predefined dictionary finds more: check focus, "
       "size and border of the markers",
-      options.image_path, dictionary_name, options.detection.inverted ? " (inverted)" : "",
-      report.num_frames_read));
+      options.image_path, wanted, report.num_frames_read));
 }
 
 }  // namespace velamap

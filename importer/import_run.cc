@@ -63,7 +63,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
           turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
                : SearchInWholeFrame(detector_, result.camera, frame->gray,
                                     &result.prior_shape_agreement);
-      result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
+      result.detections = DetectInFrame(detector_, *frame, quads);
     }
     WriteImage(*frame, result.detections);
     AddToSample(frame_idx, frame->gray);
@@ -75,7 +75,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
     result.tracks = MarkerTracks{};
   }
   result.times = TakeStageTimes();
-  result.reading_s = frame->decode_s;
+  result.reading_s = frame->reading_s;
   return result;
 }
 

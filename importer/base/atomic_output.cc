@@ -70,11 +70,8 @@ bool WriteAll(int file, const char* data, std::size_t size) {
 
 // Calls fsync() or syncfs(), which may be the first to notice a full disk.
 void Sync(const fs::path& path, int (*sync)(int)) {
-  const int file = open(path.c_str(), O_RDONLY);
-  const int status = file < 0 ? -1 : sync(file);
-  const int saved_errno = errno;
-  if (file >= 0) close(file);
-  if (status != 0) ThrowCannotWrite(path, std::strerror(saved_errno));
+  const OpenFile file(path, O_RDONLY);
+  if (file.number() < 0 || sync(file.number()) != 0) ThrowCannotWrite(path, std::strerror(errno));
 }
 
 void WriteStream(const fs::path& path, const fs::path& shown_path,

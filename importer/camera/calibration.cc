@@ -216,14 +216,6 @@ void CheckRangeOfParams(const Camera& camera, const std::string& path) {
   }
 }
 
-// Whether a picture of this size is one of the camera's, smaller or larger, up to rounding.
-bool IsPureScale(const Camera& camera, int width_px, int height_px) {
-  const double scale_x = static_cast<double>(width_px) / camera.width_px;
-  const double scale_y = static_cast<double>(height_px) / camera.height_px;
-  return std::abs(camera.height_px * scale_x - height_px) <= 0.5 ||
-         std::abs(camera.width_px * scale_y - width_px) <= 0.5;
-}
-
 }  // namespace
 
 Camera ReadCalibration(const std::string& path) {
@@ -235,6 +227,13 @@ Camera ReadCalibration(const std::string& path) {
       storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);
   CheckRangeOfParams(camera, path);
   return camera;
+}
+
+bool IsPureScale(const Camera& camera, int width_px, int height_px) {
+  const double scale_x = static_cast<double>(width_px) / camera.width_px;
+  const double scale_y = static_cast<double>(height_px) / camera.height_px;
+  return std::abs(camera.height_px * scale_x - height_px) <= 0.5 ||
+         std::abs(camera.width_px * scale_y - width_px) <= 0.5;
 }
 
 Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,

@@ -19,8 +19,12 @@ namespace velamap {
 // Throws InputError that names the file, the key or line, and what was expected.
 Camera ReadCalibration(const std::string& path);
 
+// Whether the camera has pictures of this size, smaller or larger: the aspect ratio is the same to
+// half a pixel.
+bool IsPureScale(const Camera& camera, int width_px, int height_px);
+
 // Returns the camera for frames of another size, with its parameters scaled. Throws InputError,
-// naming `calibration_path`, unless the aspect ratio is the same to half a pixel.
+// naming `calibration_path`, unless that is a pure scale.
 Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
                         const std::string& calibration_path);
 

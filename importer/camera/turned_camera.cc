@@ -1,8 +1,8 @@
 #include "importer/camera/turned_camera.h"
 
-#include <cmath>
 #include <utility>
 
+#include "importer/camera/calibration.h"
 #include "importer/camera/camera_projection.h"
 
 namespace velamap {
@@ -46,10 +46,7 @@ Eigen::Vector2d TurnInImage(const Camera& camera, int quarter_turns,
 bool IsTransposedSize(const Camera& camera, int width_px, int height_px) {
   if ((camera.width_px < camera.height_px) == (width_px < height_px)) return false;
   if (camera.width_px == camera.height_px || width_px == height_px) return false;
-  const double scale_x = static_cast<double>(width_px) / camera.height_px;
-  const double scale_y = static_cast<double>(height_px) / camera.width_px;
-  return std::abs(camera.width_px * scale_x - height_px) <= 0.5 ||
-         std::abs(camera.height_px * scale_y - width_px) <= 0.5;
+  return IsPureScale(camera, height_px, width_px);
 }
 
 }  // namespace velamap

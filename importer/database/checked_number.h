@@ -1,4 +1,4 @@
-// Numbers from the tables of velamap, which anybody may have changed.
+// Checks of the tables of velamap, which anybody may have changed.
 
 #pragma once
 
@@ -17,6 +17,9 @@ struct TablePlace {
   const std::string& path;  // of the database
   const char* table;
 };
+
+// Throws InputError that names the table, what is wrong with it, and the remedy.
+[[noreturn]] void ThrowDamagedTable(const TablePlace& place, const std::string& what);
 
 // Throws InputError for a value that is not a number within the range.
 double CheckedNumber(const TablePlace& place, const char* column, const OptionRange& range,

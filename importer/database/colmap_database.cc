@@ -10,6 +10,7 @@
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
 #include "importer/database/camera_table.h"
+#include "importer/database/checked_number.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
 #include "importer/database/image_formation_table.h"
@@ -157,7 +158,7 @@ ImageId ColmapDatabase::AddImage(CameraId camera_id, const FrameDetections& dete
 void ColmapDatabase::ReplaceDetections(ImageId image_id, const FrameDetections& detections,
                                        const std::string& detector) {
   Guarded(path_, [&] {
-    for (const char* table : {"keypoints", "descriptors"}) {
+    for (const char* table : {"keypoints", "descriptors", "marker_detections"}) {
       SQLite::Statement remove(*database_, fmt::format("DELETE FROM {} WHERE image_id = ?", table));
       remove.bind(1, image_id);
       remove.exec();
@@ -169,7 +170,6 @@ void ColmapDatabase::ReplaceDetections(ImageId image_id, const FrameDetections& 
       remove.bind(1, image_id);
       remove.exec();
     }
-    DeleteMarkerDetections(image_id, database_.get());
     InsertKeypoints(*database_, image_id, detections.markers);
     InsertMarkerDetections(image_id, detections, detector, database_.get());
   });
@@ -243,7 +243,7 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
       const std::string name = query.getColumn(0).getString();
       CheckImageName(name, path_ + ": table images");
       if (ids.emplace(name, query.getColumn(1).getUInt()).second) continue;
-      ThrowDoubleImageName(path_, name);
+      ThrowDamagedTable({path_, "images"}, "two images are named " + name);
     }
     return ids;
   });

@@ -74,7 +74,8 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.sharpening = number("sharpening", FromTo(-0.9, 10));
   found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
   found.sharpens_light = number("sharpens_light", is_true) != 0;
-  found.ink_spread_sides = number("ink_spread_sides", FromTo(-0.1, 0.1));
+  found.ink_spread_sides =
+      number("ink_spread_sides", FromTo(-kMaxInkSpreadSides, kMaxInkSpreadSides));
   found.edge_shift_blurs = number("edge_shift_blurs", FromTo(-2, 2));
   found.outline_shift_blurs = number("outline_shift_blurs", FromTo(-2, 2));
   found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));

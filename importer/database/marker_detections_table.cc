@@ -13,9 +13,9 @@
 #include "importer/base/error.h"
 #include "importer/base/replacement.h"
 #include "importer/database/camera_table.h"
+#include "importer/database/checked_number.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
-#include "importer/database/sqlite_errors.h"
 
 namespace velamap {
 namespace {
@@ -109,13 +109,11 @@ void InsertDetector(const std::string& detector, SQLite::Database* database) {
 
 // Columns from `begin` on: marker_id, part, corners, colors, corner_sigmas, is_fallback.
 MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::string& path) {
+  const TablePlace place{path, "marker_detections"};
   MarkerDetection marker;
   marker.marker_id = row.getColumn(begin).getInt();
   if (marker.marker_id < 0 || marker.marker_id > kMaxMarkerId) {
-    throw InputError(
-        fmt::format("{}: table marker_detections: {} is no marker id; delete the database and "
-                    "import again",
-                    path, marker.marker_id));
+    ThrowDamagedTable(place, fmt::format("{} is no marker id", marker.marker_id));
   }
   marker.part = row.getColumn(begin + 1).getString();
   const std::vector<double> corners = ReadBlob<double>(row.getColumn(begin + 2));
@@ -123,18 +121,15 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
   const std::vector<double> sigmas = ReadBlob<double>(row.getColumn(begin + 4));
   if (corners.size() != 2 * kNumCorners || colors.size() != 3 * kNumCorners ||
       (!sigmas.empty() && sigmas.size() != kNumCorners)) {
-    throw InputError(
-        fmt::format("{}: table marker_detections: corners, colors or corner_sigmas of marker {} "
-                    "have a wrong size; delete the database and import again",
-                    path, marker.marker_id));
+    ThrowDamagedTable(place,
+                      fmt::format("corners, colors or corner_sigmas of marker {} have a wrong size",
+                                  marker.marker_id));
   }
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     marker.corners_in_image_px[i] = {corners[2 * i], corners[2 * i + 1]};
     if (!marker.corners_in_image_px[i].allFinite()) {
-      throw InputError(
-          fmt::format("{}: table marker_detections: a corner of marker {} is not a number; delete "
-                      "the database and import again",
-                      path, marker.marker_id));
+      ThrowDamagedTable(place,
+                        fmt::format("a corner of marker {} is not a number", marker.marker_id));
     }
     marker.colors[i] = {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]};
   }
@@ -173,12 +168,6 @@ void InsertMarkerDetections(ImageId image_id, const FrameDetections& detections,
   if (detections.markers.empty() && detections.rejected.empty()) writer.InsertNone();
 }
 
-void DeleteMarkerDetections(ImageId image_id, SQLite::Database* database) {
-  SQLite::Statement remove(*database, "DELETE FROM marker_detections WHERE image_id = ?");
-  remove.bind(1, image_id);
-  remove.exec();
-}
-
 std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
                                                     SQLite::Database* database) {
   const std::set<std::string> names = ColumnNames(*database, "marker_detections");
@@ -203,7 +192,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       image.detections.image_name = query.getColumn(2).getString();
       CheckImageName(image.detections.image_name, path + ": table images");
       if (!image_names.insert(image.detections.image_name).second) {
-        ThrowDoubleImageName(path, image.detections.image_name);
+        ThrowDamagedTable({path, "images"}, "two images are named " + image.detections.image_name);
       }
       if (cameras.count(image.camera_id) == 0) {
         throw InputError(fmt::format(

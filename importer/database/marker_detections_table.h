@@ -27,8 +27,6 @@ void CreateMarkerDetectionsTable(SQLite::Database* database);
 void InsertMarkerDetections(ImageId image_id, const FrameDetections& detections,
                             const std::string& detector, SQLite::Database* database);
 
-void DeleteMarkerDetections(ImageId image_id, SQLite::Database* database);
-
 // Returns all images with rows in the table, by image_id. Columns that an earlier velamap did not
 // write are read as unknown. Throws InputError, naming the path, for values of a wrong size, a
 // marker id out of range, a corner that is not finite, and an image name that leads out of its

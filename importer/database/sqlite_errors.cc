@@ -37,10 +37,4 @@ void ThrowInputError(const std::string& path, const SQLite::Exception& exception
   throw InputError(fmt::format("{}: {}", path, message));
 }
 
-void ThrowDoubleImageName(const std::string& path, const std::string& image_name) {
-  throw InputError(
-      fmt::format("{}: table images: two images are named {}; delete the database and import again",
-                  path, image_name));
-}
-
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Input errors that name the database: those of SQLite, and an image that it holds twice.
+// Turns the errors of SQLite into input errors that name the database.
 
 #pragma once
 
@@ -10,9 +10,6 @@ namespace velamap {
 
 // Throws InputError: one line with a remedy.
 [[noreturn]] void ThrowInputError(const std::string& path, const SQLite::Exception& exception);
-
-// Throws InputError: two rows of the table of images have this name.
-[[noreturn]] void ThrowDoubleImageName(const std::string& path, const std::string& image_name);
 
 // Calls `function` and turns what SQLite throws into an InputError.
 template <typename Function>

@@ -8,7 +8,6 @@
 #include <SQLiteCpp/VariadicBind.h>
 #include <fmt/format.h>
 
-#include "importer/base/error.h"
 #include "importer/database/checked_number.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
@@ -86,10 +85,8 @@ class RowReader {
     const bool are_possible = std::all_of(values.begin(), values.end(),
                                           [&](double value) { return std::abs(value) <= kMaxPx; });
     if (are_possible && (values.size() == count || (is_optional && values.empty()))) return values;
-    throw InputError(
-        fmt::format("{}: table {}: {} is not an array of {} pixels up to {:g}; delete the database "
-                    "and import again",
-                    place_.path, place_.table, column, count, kMaxPx));
+    ThrowDamagedTable(
+        place_, fmt::format("{} is not an array of {} pixels up to {:g}", column, count, kMaxPx));
   }
 
  private:

@@ -11,7 +11,7 @@ namespace velamap {
 enum class CornerRefinement {
   kNone,    // corners of the detector's polygon
   kSubpix,  // cv::cornerSubPix with a window that fits the marker's cells
-  kEdge,    // blurred edges are fitted, corner_refinement.h
+  kEdge,    // the whole marker is fitted, or its blurred sides: corner_refinement.h
 };
 
 std::string CornerRefinementName(CornerRefinement refinement);

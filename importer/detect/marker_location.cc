@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <opencv2/imgproc.hpp>
+
 #include "importer/base/error.h"
 #include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"
@@ -31,22 +33,18 @@ CellPlaces PlacesOfCells(const QuadCorners& quad, const MarkerLook& look) {
   const UnitSquareMap map(quad);
   const int n = look.cells.rows;
   CellPlaces places;
-  cv::Point min(1 << 24, 1 << 24), max(-(1 << 24), -(1 << 24));
   for (int row = -1; row <= n; ++row) {
     for (int column = -1; column <= n; ++column) {
       const bool is_inside = row >= 0 && column >= 0 && row < n && column < n;
       const Eigen::Vector2d place = map.ToImage((column + 0.5) / n, (row + 0.5) / n);
-      const cv::Point pixel(static_cast<int>(std::lround(place.x())),
-                            static_cast<int>(std::lround(place.y())));
-      places.pixels.push_back(pixel);
+      places.pixels.emplace_back(static_cast<int>(std::lround(place.x())),
+                                 static_cast<int>(std::lround(place.y())));
       const bool is_light = !is_inside || look.cells.at<std::uint8_t>(row, column) != 0;
       places.is_light.push_back(is_light);
       places.num_light += is_light;
-      min = {std::min(min.x, pixel.x), std::min(min.y, pixel.y)};
-      max = {std::max(max.x, pixel.x), std::max(max.y, pixel.y)};
     }
   }
-  places.box = cv::Rect(min, max + cv::Point(1, 1));
+  places.box = cv::boundingRect(places.pixels);
   return places;
 }
 

@@ -22,7 +22,7 @@ constexpr double kQuietZoneSigma = 0.25;
 State Start(const std::vector<FormationSample>& samples, const FormationPriors& priors,
             double gamma, const ImageFormationParameters& formation, int num_threads) {
   FormationVector start = priors.mean;
-  start[0] = std::log(gamma);
+  start[kLogGamma] = std::log(gamma);
   return FitSamples(samples, start, formation, num_threads);
 }
 
@@ -145,7 +145,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   if (by_gray.samples.empty()) return Unknown();
   const bool light_wins = LightWins(priors, num_threads, &by_gray, &by_light);
   const State& likely = light_wins ? by_light : by_gray;
-  State winner = Start(samples, priors, std::exp(likely.parameters[0]),
+  State winner = Start(samples, priors, std::exp(likely.parameters[kLogGamma]),
                        likely.formation->parameters(), num_threads);
   if (winner.samples.size() < kMinFormationSamples) return Unknown();
   winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, num_threads);

@@ -83,7 +83,8 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   std::vector<double> sides_mm;
   for (const FormationSample& sample : samples) sides_mm.push_back(sample.side_mm);
   const double side_mm = Median(std::move(sides_mm));
-  const double ink_sigma = kInkSigma_mm / side_mm, max_ink = kMaxInkSpread_mm / side_mm;
+  const double ink_sigma = kInkSigma_mm / side_mm;
+  const double max_ink = std::min(kMaxInkSpread_mm / side_mm, kMaxInkSpreadSides);
   FormationPriors priors;
   priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0;
   priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2;

@@ -38,10 +38,10 @@ double NoiseOf(const FormationState& state, bool at_outline_corners) {
 
 // `formation` with the parameters of the vector.
 ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
-  formation.gamma = std::exp(p[0]);
-  formation.s_amplitude = p[1];
-  formation.sharpening = p[2];
-  formation.sharpening_radius_px = std::exp(p[3]);
+  formation.gamma = std::exp(p[kLogGamma]);
+  formation.s_amplitude = p[kSAmplitude];
+  formation.sharpening = p[kSharpening];
+  formation.sharpening_radius_px = std::exp(p[kLogRadius]);
   formation.ink_spread_sides = p[kInkSpread];
   formation.edge_shift_blurs = p[kEdgeShift];
   return formation;

@@ -13,9 +13,16 @@
 
 namespace velamap {
 
-// log gamma, S, sharpening, log radius, ink spread, edge shift
-constexpr int kNumFormationParameters = 6;
-constexpr int kInkSpread = 4, kEdgeShift = 5;
+// Indices of a FormationVector.
+enum FormationIndex {
+  kLogGamma,
+  kSAmplitude,
+  kSharpening,
+  kLogRadius,
+  kInkSpread,
+  kEdgeShift,
+  kNumFormationParameters
+};
 constexpr double kMaxEdgeShift = 1.0;  // blur sigmas, either way
 using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
 

@@ -202,16 +202,21 @@ Dictionary MakeDictionary(const std::string& name, const CodeSet& codes) {
   return {name, cv::makePtr<cv::aruco::Dictionary>(bytes, codes.bits_per_side, correction_bits)};
 }
 
+cv::Mat MarkerBits(const Dictionary& dictionary, int marker_id) {
+  return cv::aruco::Dictionary::getBitsFromByteList(dictionary.aruco->bytesList.row(marker_id),
+                                                    dictionary.aruco->markerSize);
+}
+
 std::string DictionaryText(const Dictionary& dictionary) {
   const cv::aruco::Dictionary& aruco = *dictionary.aruco;
   std::string text =
       fmt::format("%YAML:1.0\n---\nnmarkers: {}\nmarkersize: {}\nmaxCorrectionBits: {}\n",
                   NumMarkers(dictionary), aruco.markerSize, aruco.maxCorrectionBits);
   for (int id = 0; id < NumMarkers(dictionary); ++id) {
-    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
-        aruco.bytesList.rowRange(id, id + 1), aruco.markerSize);
     text += fmt::format("marker_{}: \"", id);
-    for (const std::uint8_t bit : cv::Mat_<std::uint8_t>(bits)) text += bit != 0 ? '1' : '0';
+    for (const std::uint8_t bit : cv::Mat_<std::uint8_t>(MarkerBits(dictionary, id))) {
+      text += bit != 0 ? '1' : '0';
+    }
     text += "\"\n";
   }
   return text;

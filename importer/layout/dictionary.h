@@ -41,6 +41,9 @@ int CellsPerSide(const Dictionary& dictionary, int border_bits);
 // The dictionary corrects as many wrong bits as the minimum distance of the codes allows.
 Dictionary MakeDictionary(const std::string& name, const CodeSet& codes);
 
+// The cells within the border, one element per cell (CV_8UC1, 1 is white).
+cv::Mat MarkerBits(const Dictionary& dictionary, int marker_id);
+
 // The text of a dictionary file that LoadDictionary() and cv::aruco can read.
 std::string DictionaryText(const Dictionary& dictionary);
 

@@ -21,7 +21,7 @@ namespace velamap {
 constexpr int kRing = 2;             // quiet zone, then its surroundings
 constexpr int kMaxRingedCells = 32;  // along a side, with the rings
 
-// The cell of column i and row j is at (j + kRing, i + kRing); 0 for dark, 1 for light.
+// The cell of column i and row j is at (j + kRing, i + kRing).
 using Lightness = Eigen::Matrix<float, kMaxRingedCells, kMaxRingedCells, Eigen::RowMajor>;
 
 // Bit i + kRing of the number at j + kRing is set where the cell of column i and row j is light.
@@ -206,10 +206,10 @@ inline Blended BlendGround(const CellWeights& u, const CellWeights& v, int num_c
 // before the first column, after the last column, before the first row, after the last row.
 struct BlendedSurroundings {
   Blended blended;
-  std::array<FloatsArray<1>, 4> by_margin{};
+  FloatsArray<4> by_margin{};
 };
 
-// Blurs a pattern that is dark except in the outermost ring, the surroundings of the quiet zone.
+// Blurs a pattern that is zero except in the outermost ring, the surroundings of the quiet zone.
 inline BlendedSurroundings BlendOutermost(const Lightness& lightness, const CellWeights& u,
                                           const CellWeights& v, int num_cells) {
   std::array<const float*, kLanes> corners;
@@ -239,11 +239,11 @@ inline BlendedSurroundings BlendOutermost(const Lightness& lightness, const Cell
       right -= internal::Choose(u.first + i == last, by_x);
     }
     const auto index = static_cast<std::size_t>(j);
-    surroundings.by_margin[0].groups[0] += left * v.value[index];
-    surroundings.by_margin[1].groups[0] += right * v.value[index];
+    surroundings.by_margin[0] += left * v.value[index];
+    surroundings.by_margin[1] += right * v.value[index];
     const Floats by_y = sums.value * v.by_x[index];
-    surroundings.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
-    surroundings.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
+    surroundings.by_margin[2] += internal::Choose(v.first + j == 0, by_y);
+    surroundings.by_margin[3] -= internal::Choose(v.first + j == last, by_y);
     return sums;
   });
   return surroundings;

@@ -45,6 +45,9 @@ struct ImageFormationParameters {
   double outline_corner_weight = 1.0;
 };
 
+// No estimate has more ink than this, which is half of a cell of the coarsest markers.
+inline constexpr double kMaxInkSpreadSides = 0.1;
+
 struct FormationEstimate {
   ImageFormationParameters parameters;
   int num_samples = 0;      // that could be fitted; 0: the parameters are defaults

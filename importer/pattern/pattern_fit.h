@@ -29,7 +29,6 @@ namespace velamap {
 // column 0 from corner 0 to 3. Corners in OpenCV's pixel frame. Nothing if the marker leaves the
 // image, has too little contrast or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells,
-                                         const ImageFormation& formation = ImageFormation());
+                                         const cv::Mat& cells, const ImageFormation& formation);
 
 }  // namespace velamap

@@ -156,7 +156,7 @@ class PatternPicture {
     jacobian[P::kSurround] = contrast * surroundings.blended.value;
     jacobian[P::kInnerLight] = contrast * inner;
     for (std::size_t i = 0; i < 4; ++i) {
-      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i].groups[0];
+      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i];
     }
     if (!model_.tone->IsLinear()) {
       for (Floats& derivative : jacobian) derivative *= slope;
@@ -166,8 +166,8 @@ class PatternPicture {
  private:
   using P = PatternParameters;
 
-  static constexpr double kMarginInCells =
-      0.75;  // how far outside the black square pixels are used
+  // How far outside the black square pixels are used.
+  static constexpr double kMarginInCells = 0.75;
 
   // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
   struct Place {

@@ -14,10 +14,13 @@ constexpr double kSquareOfMarker = 10.0 / 7.0;  // side of a chessboard square /
 constexpr double kLabel_mm = 8.0;               // height of the label below the board
 constexpr double kArrow_mm = 6.0;
 
-// Width or height of the board. A grid ends with its last marker, a chessboard with its last
-// square.
-double Extent(BoardKind kind, int count, double spacing_mm, double length_mm) {
-  return kind == BoardKind::kCharuco ? count * spacing_mm : (count - 1) * spacing_mm + length_mm;
+// A grid ends with its last marker, a chessboard with its last square.
+Eigen::Vector2d SizeOf(const Board& board) {
+  const auto extent_mm = [&](int count) {
+    return board.kind == BoardKind::kCharuco ? count * board.spacing_mm
+                                             : (count - 1) * board.spacing_mm + board.length_mm;
+  };
+  return {extent_mm(board.num_columns), extent_mm(board.num_rows)};
 }
 
 // The size of the board with the part of the outer markers' white margin that the border of the
@@ -26,9 +29,7 @@ Eigen::Vector2d SizeWithMargin(const Board& board, int num_cells) {
   const bool is_charuco = board.kind == BoardKind::kCharuco;
   const double white_mm =
       std::max(0.0, DefaultMargin(board.length_mm, num_cells) - board.frame.min_mm.x());
-  return Eigen::Vector2d(Extent(board.kind, board.num_columns, board.spacing_mm, board.length_mm),
-                         Extent(board.kind, board.num_rows, board.spacing_mm, board.length_mm)) +
-         Eigen::Vector2d::Constant(is_charuco ? 0.0 : 2 * white_mm);
+  return SizeOf(board) + Eigen::Vector2d::Constant(is_charuco ? 0.0 : 2 * white_mm);
 }
 
 double DefaultSpacing(BoardKind kind, double length_mm, int num_cells) {
@@ -84,9 +85,7 @@ void CheckSize(const Paper& paper, int num_cells, const Board& board) {
 
 void PlaceOnBoard(Board* board) {
   const double spacing = board->spacing_mm;
-  const Eigen::Vector2d size(Extent(board->kind, board->num_columns, spacing, board->length_mm),
-                             Extent(board->kind, board->num_rows, spacing, board->length_mm));
-  const Eigen::Vector2d min_mm = board->frame.min_mm + 0.5 * (Room(board->frame) - size);
+  const Eigen::Vector2d min_mm = board->frame.min_mm + 0.5 * (Room(board->frame) - SizeOf(*board));
   const bool is_charuco = board->kind == BoardKind::kCharuco;
   const double inset = is_charuco ? 0.5 * (spacing - board->length_mm) : 0.0;
   for (int row = 0; row < board->num_rows; ++row) {

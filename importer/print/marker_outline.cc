@@ -1,5 +1,6 @@
 #include "importer/print/marker_outline.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -39,12 +40,11 @@ Direction TakeNext(const GridPoint& point, Direction from, Sides* sides) {
   const auto it = sides->find(point);
   VELAMAP_CHECK(it != sides->end() && !it->second.empty());
   std::vector<Direction>& candidates = it->second;
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i] == (from + 1) % 4) chosen = i;
-  }
-  const Direction next = candidates[chosen];
-  candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(chosen));
+  const auto right_turn = static_cast<Direction>((from + 1) % 4);
+  auto chosen = std::find(candidates.begin(), candidates.end(), right_turn);
+  if (chosen == candidates.end()) chosen = candidates.begin();
+  const Direction next = *chosen;
+  candidates.erase(chosen);
   if (candidates.empty()) sides->erase(it);
   return next;
 }

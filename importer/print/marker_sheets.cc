@@ -142,7 +142,7 @@ PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_
     report.num_markers = static_cast<int>(plan.markers.size());
     report.margin_mm = planned.front().stickers.front().margin_mm;
   }
-  if (!plan.places.placements.empty() || !plan.places.rigid_parts.empty()) {
+  if (plan.places.placement || plan.places.hull) {
     pages = DrawPlacement(plan.places, options.sheet.paper);
     files["placement.svg"] = SvgText(StackDrawings(pages));
   }

@@ -225,13 +225,12 @@ void WriteRigidPart(const LayoutPart& part, PageWriter* pen) {
 Drawing DrawPicture(const PlacementPlan& plan, const Paper& paper) {
   PageWriter pen(paper);
   pen.Write("Where the markers go", kTitle_mm, true);
-  if (!plan.placements.empty()) {
+  if (plan.placement) {
+    const Placement& placement = *plan.placement;
     pen.Write("This drawing is not in true scale; the sheets after it are.", kWords_mm, false);
-  }
-  for (const Placement& placement : plan.placements) {
     const std::vector<std::string> instructions = Instructions(placement);
     const double below_mm = 1.4 * kWords_mm * double(instructions.size()) +
-                            double(plan.rigid_parts.size()) * (4.4 * kWords_mm + 2.0) + 18.0;
+                            (plan.hull ? 4.4 * kWords_mm + 2.0 : 0.0) + 18.0;
     const Eigen::AlignedBox2d free_mm(
         Eigen::Vector2d(kBorder_mm + 8.0, pen.y_mm + 9.0),
         Eigen::Vector2d(pen.page.width_mm - kBorder_mm, pen.Bottom() - below_mm));
@@ -243,7 +242,7 @@ Drawing DrawPicture(const PlacementPlan& plan, const Paper& paper) {
     pen.y_mm = free_mm.max().y() + 14.0;
     for (const std::string& line : instructions) pen.Write(line, kWords_mm, false);
   }
-  for (const LayoutPart& part : plan.rigid_parts) WriteRigidPart(part, &pen);
+  if (plan.hull) WriteRigidPart(*plan.hull, &pen);
   return pen.page;
 }
 
@@ -317,10 +316,9 @@ std::vector<Drawing> DrawTable(const Placement& placement, const Paper& paper) {
 
 std::vector<Drawing> DrawPlacement(const PlacementPlan& plan, const Paper& paper) {
   std::vector<Drawing> pages = {DrawPicture(plan, paper)};
-  for (const Placement& placement : plan.placements) {
-    const std::vector<Drawing> table = DrawTable(placement, paper);
-    pages.insert(pages.end(), table.begin(), table.end());
-  }
+  if (!plan.placement) return pages;
+  const std::vector<Drawing> table = DrawTable(*plan.placement, paper);
+  pages.insert(pages.end(), table.begin(), table.end());
   return pages;
 }
 

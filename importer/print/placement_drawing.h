@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "importer/print/drawing.h"
@@ -13,8 +14,8 @@ namespace velamap {
 
 // The markers to stick on and their places.
 struct PlacementPlan {
-  std::vector<Placement> placements;    // none or one
-  std::vector<LayoutPart> rigid_parts;  // parts such as the hull, on which the places are free
+  std::optional<Placement> placement;
+  std::optional<LayoutPart> hull;  // a rigid part, on which the places are free
 };
 
 // The pages with the picture and then the table. They are not in true scale.

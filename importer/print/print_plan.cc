@@ -38,7 +38,6 @@ double RequireLength(const PrintOptions& options) {
     throw InputError(
         "--marker_length: missing; give the outer edge of the black squares in m, such as 0.1");
   }
-  CheckMarkerLength(*options.marker_length_m, "--marker_length");
   return 1000 * *options.marker_length_m;
 }
 
@@ -87,7 +86,7 @@ void AddHull(int num_markers, int first_id, PrintPlan* plan) {
   plan->layout.parts.push_back(
       RigidPart("hull", ids.empty() ? first_id : ids.back() + 1, num_markers));
   plan->layout.reference_part = "hull";
-  plan->places.rigid_parts.push_back(plan->layout.parts.back());
+  plan->places.hull = plan->layout.parts.back();
 }
 
 void PlanPlaces(const PrintOptions& options, int num_cells, PrintPlan* plan) {
@@ -97,14 +96,12 @@ void PlanPlaces(const PrintOptions& options, int num_cells, PrintPlan* plan) {
   plan->layout = MakeLayout("", *options.marker_length_m);
   const bool is_hull = options.arrangement == Arrangement::kHull;
   if (options.arrangement == Arrangement::kSail) {
-    plan->places.placements.push_back(
-        PlaceOnSail(options.sail, length_mm, sticker_mm, options.first_id));
+    plan->places.placement = PlaceOnSail(options.sail, length_mm, sticker_mm, options.first_id);
   } else if (options.arrangement == Arrangement::kGrid) {
-    plan->places.placements.push_back(
-        PlaceOnGrid(options.grid, length_mm, sticker_mm, options.first_id));
+    plan->places.placement = PlaceOnGrid(options.grid, length_mm, sticker_mm, options.first_id);
   }
-  for (const Placement& placement : plan->places.placements) {
-    plan->layout.parts.push_back(PartOfPlacement(placement));
+  if (plan->places.placement) {
+    plan->layout.parts.push_back(PartOfPlacement(*plan->places.placement));
   }
   const int hull_markers = options.sail.hull_markers;
   AddHull(is_hull && hull_markers == 0 ? kDefaultHullMarkers : hull_markers, options.first_id,
@@ -128,7 +125,6 @@ void PlanLooseMarkers(const PrintOptions& options, PrintPlan* plan) {
 }
 
 void PlanOneBoard(const PrintOptions& options, int num_cells, PrintPlan* plan) {
-  if (options.marker_length_m) RequireLength(options);
   plan->board = PlanBoard(
       options.arrangement == Arrangement::kBoard ? BoardKind::kGrid : BoardKind::kCharuco,
       options.grid, options.sheet.paper, options.marker_length_m, num_cells, options.first_id);

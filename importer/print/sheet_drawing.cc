@@ -36,29 +36,17 @@ void AddLabel(const Sticker& sticker, const PrintedLook& look, Drawing* drawing)
   drawing->areas.push_back(UpArrow({left + 0.3 * height, bottom}, 0.8 * height));
   drawing->texts.push_back(
       {"up", {left + 0.75 * height, bottom}, 0.4 * height, TextAnchor::kStart, false, kPaleInk});
-  drawing->texts.push_back({fmt::format("{}", sticker.marker.marker_id),
-                            {left + 1.4 * height, bottom},
-                            0.95 * height,
-                            TextAnchor::kStart,
-                            true,
-                            kBlack,
-                            0.25 * width});
-  const double room = std::max(0.1 * width, width - 1.5 * height - 0.3 * width);
-  drawing->texts.push_back(
-      {fmt::format("{}, {}", look.dictionary.name, LengthText(sticker.marker.length_mm)),
-       {right, bottom - 0.5 * height},
-       0.42 * height,
-       TextAnchor::kEnd,
-       false,
-       kBlack,
-       room});
-  drawing->texts.push_back({sticker.marker.place,
-                            {right, bottom},
-                            0.42 * height,
-                            TextAnchor::kEnd,
-                            false,
-                            kBlack,
-                            room});
+  const Eigen::Vector2d id_place(left + 1.4 * height, bottom);
+  drawing->texts.push_back({fmt::format("{}", sticker.marker.marker_id), id_place, 0.95 * height,
+                            TextAnchor::kStart, true, kBlack, 0.25 * width});
+  const auto write_right = [&](const std::string& text, double up) {
+    const Eigen::Vector2d place(right, bottom - up);
+    const double room = std::max(0.1 * width, width - 1.5 * height - 0.3 * width);
+    drawing->texts.push_back({text, place, 0.42 * height, TextAnchor::kEnd, false, kBlack, room});
+  };
+  write_right(fmt::format("{}, {}", look.dictionary.name, LengthText(sticker.marker.length_mm)),
+              0.5 * height);
+  write_right(sticker.marker.place, 0.0);
 }
 
 // Draws a numbered scale from `start_mm` to the right or upwards, with ticks every millimetre up to
@@ -116,20 +104,13 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
   drawing.height_mm = frame.height_mm;
   const double left = frame.min_mm.x(), right = frame.max_mm.x(), width = right - left;
   const double header = frame.min_mm.y() - 4.0;
-  drawing.texts.push_back({words.title,
-                           {left, header},
-                           kSheetWords_mm,
-                           TextAnchor::kStart,
-                           true,
-                           kPaleInk,
-                           0.8 * width});
-  drawing.texts.push_back({fmt::format("{} of {}", words.sheet_number, words.num_sheets),
-                           {right, header},
-                           kSheetWords_mm,
-                           TextAnchor::kEnd,
-                           false,
-                           kPaleInk,
-                           0.18 * width});
+  const auto write = [&](const std::string& text, const Eigen::Vector2d& place, TextAnchor anchor,
+                         bool is_bold, const Color& color, double max_width) {
+    drawing.texts.push_back({text, place, kSheetWords_mm, anchor, is_bold, color, max_width});
+  };
+  write(words.title, {left, header}, TextAnchor::kStart, true, kPaleInk, 0.8 * width);
+  write(fmt::format("{} of {}", words.sheet_number, words.num_sheets), {right, header},
+        TextAnchor::kEnd, false, kPaleInk, 0.18 * width);
   const int scale_mm = width >= 112 ? 100 : width >= 62 ? 50 : 30;
   const double bottom = frame.max_mm.y() + 18.0;
   AddScale({left, bottom - 9.0}, scale_mm, false, &drawing);
@@ -138,25 +119,14 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
   if (has_two_scales) {
     AddScale({left, frame.max_mm.y() - kUprightScale_mm}, scale_mm, true, &drawing);
   }
-  drawing.texts.push_back(
-      {fmt::format(
-           "Print at 100 % (\"actual size\", not \"fit to page\"), then measure {} {} mm long.",
-           has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
-       {left, bottom - 4.4},
-       kSheetWords_mm,
-       TextAnchor::kStart,
-       true,
-       kBlack,
-       width});
-  drawing.texts.push_back(
-      {"If it is not, print again at 100 %. If that does not help, measure the black squares and "
-       "write their side, in m, as marker_length into layout.yml.",
-       {left, bottom - 0.4},
-       kSheetWords_mm,
-       TextAnchor::kStart,
-       false,
-       kBlack,
-       width});
+  write(fmt::format(
+            "Print at 100 % (\"actual size\", not \"fit to page\"), then measure {} {} mm long.",
+            has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
+        {left, bottom - 4.4}, TextAnchor::kStart, true, kBlack, width);
+  write(
+      "If it is not, print again at 100 %. If that does not help, measure the black squares and "
+      "write their side, in m, as marker_length into layout.yml.",
+      {left, bottom - 0.4}, TextAnchor::kStart, false, kBlack, width);
   return drawing;
 }
 

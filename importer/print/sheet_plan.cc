@@ -1,7 +1,6 @@
 #include "importer/print/sheet_plan.h"
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -38,6 +37,11 @@ Grid MakeGrid(const Paper& paper, bool is_landscape, const Sticker& sticker) {
           std::max(0, NumThatFit(room_mm.y(), sticker.Height()))};
 }
 
+int NumOnSheet(const Grid& grid, const PrintSheetOptions& options) {
+  const int limit = options.markers_per_sheet;
+  return limit > 0 ? std::min(grid.Count(), limit) : grid.Count();
+}
+
 [[noreturn]] void ThrowTooSmall(const Sticker& sticker, const PrintSheetOptions& options) {
   const Eigen::Vector2d room_mm = MakePageFrame(options.paper, false).FreeSize();
   throw InputError(fmt::format(
@@ -52,9 +56,7 @@ Grid MakeGrid(const Paper& paper, bool is_landscape, const Sticker& sticker) {
 Grid ChooseGrid(const Sticker& sticker, const PrintSheetOptions& options) {
   const Grid upright = MakeGrid(options.paper, false, sticker);
   const Grid turned = MakeGrid(options.paper, true, sticker);
-  const int limit = options.markers_per_sheet > 0 ? options.markers_per_sheet : INT_MAX;
-  const Grid& grid =
-      std::min(turned.Count(), limit) > std::min(upright.Count(), limit) ? turned : upright;
+  const Grid& grid = NumOnSheet(turned, options) > NumOnSheet(upright, options) ? turned : upright;
   if (grid.Count() == 0) ThrowTooSmall(sticker, options);
   return grid;
 }
@@ -83,8 +85,7 @@ Sheet FillSheet(const Grid& grid, const std::vector<Sticker>& stickers, std::siz
 void AddSheets(const std::vector<Sticker>& stickers, const PrintSheetOptions& options,
                std::vector<Sheet>* sheets) {
   const Grid grid = ChooseGrid(stickers.front(), options);
-  const int limit = options.markers_per_sheet > 0 ? options.markers_per_sheet : grid.Count();
-  const auto per_sheet = static_cast<std::size_t>(std::min(grid.Count(), limit));
+  const auto per_sheet = static_cast<std::size_t>(NumOnSheet(grid, options));
   for (std::size_t first = 0; first < stickers.size(); first += per_sheet) {
     sheets->push_back(
         FillSheet(grid, stickers, first, std::min(per_sheet, stickers.size() - first)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "importer/detect/interpolate.h"
 #include "importer/geometry/unit_square_map.h"
@@ -34,9 +35,7 @@ GrayLine ReadLine(const cv::Mat& gray, const UnitSquareMap& map, double v) {
 }
 
 double Mean(const GrayLine& line) {
-  double sum = 0.0;
-  for (const float value : line) sum += value;
-  return sum / kNumPlaces;
+  return std::accumulate(line.begin(), line.end(), 0.0) / kNumPlaces;
 }
 
 Floats LookUp(const GrayLine& line, Floats u) {
@@ -110,11 +109,8 @@ void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSampleGroup* sa
 SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad, int side_idx, int num_cells,
                         double blur_px) {
   const auto turned = [&](int turns) {
-    QuadCorners result;
-    for (int i = 0; i < kNumCorners; ++i) {
-      result[static_cast<std::size_t>(i)] =
-          quad[static_cast<std::size_t>((i + turns) % kNumCorners)];
-    }
+    QuadCorners result = quad;
+    std::rotate(result.begin(), result.begin() + turns % kNumCorners, result.end());
     return result;
   };
   const QuadCorners own = turned(side_idx);
@@ -152,8 +148,8 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   const int major_size = major == 0 ? gray.cols : gray.rows;
   const int minor_size = major == 0 ? gray.rows : gray.cols;
   int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
-  first += (stride - first % stride) %
-           stride;  // so that the choice of lines does not depend on the band
+  // So that the choice of lines does not depend on the band.
+  first += (stride - first % stride) % stride;
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
   Floats x{}, y{};

@@ -47,26 +47,24 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
   std::vector<MarkerDetection> detections;
   int num_fallbacks = 0;
   for (const MarkerQuad& found : quads) {
-    MarkerQuad quad = found;
     const StageTimer timer(ImportStage::kRefine);
-    std::optional<RefinedCorners> refined;
-    MarkerDetection detection;
+    ReadMarker read{found, {}};
+    auto& [quad, refined] = read;
     const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
     if (options.corner_refinement == CornerRefinement::kNone) {
       refined = RefinedCorners{found.corners_px};
     } else if (fits_edges) {
-      ReadMarker read =
-          RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation);
-      quad = read.quad;
-      refined = std::move(read.refined);
+      read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation);
     }
-    detection.marker_id = quad.marker_id;
     const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
     const bool is_fitted = refined.has_value();
     // What only an enlarged picture shows has to look like the whole marker.
     if (fits_edges && !is_fitted && quad.is_second_look) continue;
-    if (!is_fitted)
+    if (!is_fitted) {
       refined = RefinedCorners{RefineSubpix(dark_on_light, quad.corners_px, cells.rows)};
+    }
+    MarkerDetection detection;
+    detection.marker_id = quad.marker_id;
     if (fits_edges) {
       const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);
       detection.is_fallback = !is_fitted && num_saddles < kNumCorners;

@@ -67,21 +67,19 @@ int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_t
 
 MarkerDetection Turned(const MarkerDetection& marker, int turn) {
   MarkerDetection turned = marker;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    const std::size_t from = (i + static_cast<std::size_t>(turn)) % kNumCorners;
-    turned.corners_in_image_px[i] = marker.corners_in_image_px[from];
-    turned.colors[i] = marker.colors[from];
-    turned.corner_sigma_px[i] = marker.corner_sigma_px[from];
-  }
+  const auto rotate = [turn](auto* of_corners) {
+    std::rotate(of_corners->begin(), of_corners->begin() + turn, of_corners->end());
+  };
+  rotate(&turned.corners_in_image_px);
+  rotate(&turned.colors);
+  rotate(&turned.corner_sigma_px);
   return turned;
 }
 
 CodeSymmetries FindCodeSymmetries(const Dictionary& dictionary) {
   CodeSymmetries symmetries;
-  const cv::Mat& codes = dictionary.aruco->bytesList;
-  for (int id = 0; id < codes.rows; ++id) {
-    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(codes.rowRange(id, id + 1),
-                                                                    dictionary.aruco->markerSize);
+  for (int id = 0; id < NumMarkers(dictionary); ++id) {
+    const cv::Mat bits = MarkerBits(dictionary, id);
     cv::Mat turned = bits.clone();
     for (int turn = 1; turn < kNumCorners; ++turn) {
       cv::rotate(turned, turned, cv::ROTATE_90_CLOCKWISE);

@@ -5,11 +5,10 @@
 #include <ostream>
 
 #include "importer/base/error.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {
-
-constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
 
 // Parses one line after another until the record is complete.
 class RecordParser {
@@ -73,7 +72,7 @@ class RecordParser {
 bool GetLine(std::istream& in, int* line, std::string* text) {
   if (!std::getline(in, *text)) return false;
   ++*line;
-  if (*line == 1 && text->rfind(kByteOrderMark, 0) == 0) text->erase(0, 3);
+  if (*line == 1 && text->rfind(kByteOrderMark, 0) == 0) text->erase(0, kByteOrderMark.size());
   return true;
 }
 

@@ -11,11 +11,6 @@
 #include "importer/base/files.h"
 
 namespace velamap {
-namespace {
-
-const std::string kUtf8Mark = "\xef\xbb\xbf";
-
-}  // namespace
 
 void CheckInputFile(const std::string& path, const std::string& what, std::uintmax_t max_size) {
   if (!Exists(path)) return;
@@ -37,10 +32,8 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw InputError(fmt::format("{}: the {} cannot be read", path, what));
-  if (text.compare(0, kUtf8Mark.size(), kUtf8Mark) == 0) {
-    text.erase(0, kUtf8Mark.size());
-  }
-  if (text.compare(0, kUtf8Mark.size(), kUtf8Mark) == 0) {
+  if (text.rfind(kByteOrderMark, 0) == 0) text.erase(0, kByteOrderMark.size());
+  if (text.rfind(kByteOrderMark, 0) == 0) {
     throw InputError(fmt::format(
         "{}: the {} begins with two byte order marks; save it as UTF-8 without any", path, what));
   }

@@ -4,11 +4,15 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace velamap {
 
 // Calibrations, layouts, dictionaries and project files are far smaller.
 inline constexpr std::uintmax_t kMaxTextFileSize = 16 << 20;
+
+// Some programs write it at the beginning of a file in UTF-8.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 // Throws InputError, naming `what` and the path, if the file is a folder, a pipe or the like, or
 // larger than `max_size` bytes. Nothing happens if it is missing.

@@ -224,11 +224,11 @@ std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, con
 }
 
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const cv::Mat& gray, const std::vector<MarkerQuad>& quads) {
+                              const std::vector<MarkerQuad>& quads) {
   FrameDetections detections{frame.image_name, frame.frame_number, frame.time_s, {}, {}};
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
+       RefineMarkers(frame.gray, quads, detector.dictionary, detector.border_bits, detector.options,
                      detector.formation)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;

@@ -90,9 +90,8 @@ bool IsOfLayout(const std::string& description, const FrameDetector& detector);
 void CheckDictionaryOf(const std::string& description, const Layout& layout,
                        const std::string& database_path);
 
-// The steps after the search. `gray` is the frame in grey, `quads` are the markers found in it.
-// Thread-safe.
+// The steps after the search. `quads` are the markers found in the frame. Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const cv::Mat& gray, const std::vector<MarkerQuad>& quads);
+                              const std::vector<MarkerQuad>& quads);
 
 }  // namespace velamap

@@ -90,9 +90,9 @@ double LargestMarker(const std::vector<MarkerTrack>& tracks) {
 
 std::vector<MarkerTrack> UpdateTracks(const std::vector<MarkerTrack>& tracks,
                                       const std::vector<MarkerQuad>& quads,
-                                      const std::vector<int>& quad_of_track,
-                                      const std::vector<PointMotion>& motions,
                                       const cv::Size& image_size, int num_frames) {
+  const std::vector<int> quad_of_track = Associate(tracks, quads, image_size);
+  const std::vector<PointMotion> motions = MotionsOf(tracks, quads, quad_of_track);
   std::vector<MarkerTrack> next;
   std::vector<bool> known(quads.size(), false);
   for (std::size_t t = 0; t < tracks.size(); ++t) {

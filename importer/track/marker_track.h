@@ -47,12 +47,10 @@ std::vector<PointMotion> MotionsOf(const std::vector<MarkerTrack>& tracks,
                                    const std::vector<MarkerQuad>& quads,
                                    const std::vector<int>& quad_of_track);
 
-// The tracks after a frame with `quads`: continued ones, lost ones shifted with their surroundings,
-// and new ones.
+// The tracks after a frame with `quads`, which is `num_frames` later: continued ones, lost ones
+// shifted with their surroundings, and new ones.
 std::vector<MarkerTrack> UpdateTracks(const std::vector<MarkerTrack>& tracks,
                                       const std::vector<MarkerQuad>& quads,
-                                      const std::vector<int>& quad_of_track,
-                                      const std::vector<PointMotion>& motions,
                                       const cv::Size& image_size, int num_frames);
 
 // The longest side of the boxes around the markers of the last frame, px.

@@ -131,10 +131,8 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
 
 void Advance(const std::vector<MarkerQuad>& quads, const cv::Size& size, int frame_number,
              MarkerTracks* tracks) {
-  const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
-  const std::vector<PointMotion> motions = MotionsOf(tracks->tracks, quads, quad_of_track);
-  tracks->tracks = UpdateTracks(tracks->tracks, quads, quad_of_track, motions, size,
-                                std::max(1, frame_number - tracks->frame_number));
+  tracks->tracks =
+      UpdateTracks(tracks->tracks, quads, size, std::max(1, frame_number - tracks->frame_number));
   tracks->frame_number = frame_number;
 }
 

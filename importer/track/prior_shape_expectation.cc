@@ -41,8 +41,8 @@ std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_fro
   return corners_px;
 }
 
-double SignedArea(
-    const QuadCorners& quad) {  // positive: clockwise in the image, the face is visible
+// Positive where the corners run clockwise in the image, so that the face is visible.
+double SignedArea(const QuadCorners& quad) {
   return 0.5 * Cross(quad[2] - quad[0], quad[3] - quad[1]);
 }
 

@@ -143,8 +143,8 @@ class VideoFile : public FrameSource {
       frame.time_s = read->time_s;
       frame.picture = std::move(read->picture);
       frame.is_whole = read->is_whole;
-      const std::chrono::duration<double> decoding = std::chrono::steady_clock::now() - begin;
-      frame.decode_s = decoding.count();
+      const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - begin;
+      frame.reading_s = reading.count();
       return frame;
     }
     return std::nullopt;

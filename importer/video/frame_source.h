@@ -25,7 +25,7 @@ struct Frame {
   cv::Mat gray;                         // 8 bit, once the frame is loaded
   cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
-  double decode_s = 0.0;                // video only: wall time of Next()
+  double reading_s = 0.0;               // video only: wall time of Next()
   // False for a frame of a video that is damaged in the file, or builds on one that is.
   bool is_whole = true;
   std::optional<SourceFile> source;  // photographs only, once loaded

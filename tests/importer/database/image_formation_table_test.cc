@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "importer/database/colmap_database.h"
+#include "importer/formation/formation_problem.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -42,6 +43,22 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->num_samples, 31);
   EXPECT_EQ(read->noise_gray, 2.5);
   EXPECT_EQ(read->inset_sigma_px, 0.012);
+}
+
+// Ink reaches a third of a millimetre, which is much of the side of a tiny marker.
+TEST(ImageFormationTable, HoldsTheMostInkThatAnEstimateOfTinyMarkersGives) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  FormationSample sample;
+  sample.side_mm = 1.0;
+  FormationEstimate estimate;
+  double& ink_spread = estimate.parameters.ink_spread_sides;
+  ink_spread = PriorsFor({sample}).max[kInkSpread];
+  EXPECT_GT(ink_spread, 0.0);
+  ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation(estimate);
+  const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->parameters.ink_spread_sides, ink_spread);
 }
 
 // The corners of outlines had no weight of their own, and edges no shift but that of the ink.

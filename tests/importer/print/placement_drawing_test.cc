@@ -39,7 +39,7 @@ Drawing PictureOf(double luff_m, double foot_m, double leech_m, double length_mm
   options.foot_m = foot_m;
   options.leech_m = leech_m;
   PlacementPlan plan;
-  plan.placements = {PlaceOnSail(options, length_mm, 1.5 * length_mm, 0)};
+  plan.placement = PlaceOnSail(options, length_mm, 1.5 * length_mm, 0);
   return DrawPlacement(plan, ParsePaper(paper, "")).front();
 }
 
