@@ -201,6 +201,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   }
   ComparisonOptions comparison = options.comparison;
   std::optional<MeshDistance> mesh;
+  std::optional<SeriesReference> shared;
   if (IsMeshPath(reference_path)) {
     mesh.emplace(ReadMesh(reference_path, options.mesh));
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -215,12 +216,13 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       CheckMetres(paths[i], shapes[i].shape, reference_path, (*reference)->shape, layout);
     }
+    shared.emplace(**reference);
   }
   std::vector<Comparison> series;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     try {
       series.push_back(mesh ? Compare(names[i], shapes[i], *mesh, layout, comparison)
-                            : Compare(names[i], shapes[i], **reference, layout, comparison));
+                            : Compare(names[i], shapes[i], *shared, layout, comparison));
     } catch (const DataError& error) {
       if (shapes.size() == 1) throw;
       throw DataError(fmt::format("{}: {}", paths[i], error.what()));
