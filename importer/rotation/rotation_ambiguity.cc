@@ -67,12 +67,13 @@ int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_t
 
 MarkerDetection Turned(const MarkerDetection& marker, int turn) {
   MarkerDetection turned = marker;
-  const auto rotate = [turn](auto* of_corners) {
-    std::rotate(of_corners->begin(), of_corners->begin() + turn, of_corners->end());
+  const auto rotate = [turn](const auto& of_corners, auto* rotated) {
+    std::rotate_copy(of_corners.begin(), of_corners.begin() + turn, of_corners.end(),
+                     rotated->begin());
   };
-  rotate(&turned.corners_in_image_px);
-  rotate(&turned.colors);
-  rotate(&turned.corner_sigma_px);
+  rotate(marker.corners_in_image_px, &turned.corners_in_image_px);
+  rotate(marker.colors, &turned.colors);
+  rotate(marker.corner_sigma_px, &turned.corner_sigma_px);
   return turned;
 }
 
