@@ -112,6 +112,13 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   return field;
 }
 
+// The axis of the image along which the rows of a sensor follow each other. Sensors are wider than
+// high, so portrait frames are turned and show the sensor's rows as columns.
+int ReadoutAxis(const Camera& camera) { return camera.height_px > camera.width_px ? 0 : 1; }
+
+// Size of the image along that axis.
+double ReadoutSizePx(const Camera& camera) { return std::min(camera.width_px, camera.height_px); }
+
 // Empty where the neighbouring frames show too few markers.
 std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
   const FrameDetections& frame = *window[kMiddle];
@@ -187,7 +194,7 @@ CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images) {
 
 Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                                  const Eigen::Vector2d& velocity_px_s) {
-  return (x_in_image_px.y() / camera.height_px - 0.5) * velocity_px_s;
+  return (x_in_image_px[ReadoutAxis(camera)] / ReadoutSizePx(camera) - 0.5) * velocity_px_s;
 }
 
 void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
@@ -204,7 +211,7 @@ void MoveFromMiddleRow(double rolling_shutter_s, const CornerVelocities& velocit
   // MoveToMiddleRow scales a point's distance from the middle row, and so its ShutterDirection, by
   // this factor; the inverse has to divide by it.
   const auto scale = [&](const Camera& camera, const Eigen::Vector2d& velocity_px_s) {
-    return 1.0 - rolling_shutter_s * velocity_px_s.y() / camera.height_px;
+    return 1.0 - rolling_shutter_s * velocity_px_s[ReadoutAxis(camera)] / ReadoutSizePx(camera);
   };
   AddShutter(
       velocities_px_s,

@@ -26,7 +26,8 @@ CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
 // Derivative of a corner's position with respect to the time from the first row of the frame to the
 // last, px/s: how far the corner moves from when the middle row is read to when its own row is, if
-// reading the frame takes one second.
+// reading the frame takes one second. In portrait frames, which are turned, the sensor's rows are
+// the columns of the image, from left to right.
 Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                                  const Eigen::Vector2d& velocity_px_s);
 

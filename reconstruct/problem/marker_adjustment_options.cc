@@ -48,7 +48,8 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             "distortion parameter moves the image's corners",
             FromTo(1e-9, 10)},
            {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
-            "time from the first row of a video's frame to the last; negative: upwards; 0: unknown",
+            "time from the first row of a video's frame to the last, or from the left column of a "
+            "portrait frame to the right; negative: the other way; 0: unknown",
             FromTo(-0.1, 0.1)},
            {"MarkerAdjustment.estimate_rolling_shutter", &options->estimate_rolling_shutter, "0|1",
             "estimate that time where the frames show it"}}};

@@ -53,7 +53,8 @@ struct MarkerAdjustmentOptions {
   // (UnknownCameraPrior) in place of the calibration.
   bool find_camera = false;
   // Time from the first row of a frame to the last; corners move meanwhile, with a velocity that
-  // the neighbouring frames show. Negative: rows are read from the bottom up. 0: unknown.
+  // the neighbouring frames show. Negative: rows are read from the bottom up. In portrait frames,
+  // columns are read from left to right, or the other way if negative. 0: unknown.
   double rolling_shutter_s = 0.0;
   // Estimate that time if it is unknown and the frames determine it.
   bool estimate_rolling_shutter = true;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
@@ -25,8 +26,12 @@ struct Motion {
 // A hand-held camera that takes a scene in a video, of which the model holds one frame a second.
 class RollingShutter : public testing::Test {
  protected:
-  RollingShutter() {
+  RollingShutter() { Stage({}); }
+
+  // `camera` is that of SyntheticSceneOptions.
+  void Stage(const Camera& camera) {
     SyntheticSceneOptions options;
+    options.camera = camera;
     options.num_rows = 3;
     options.num_columns = 4;
     options.num_frames = 9;
@@ -38,6 +43,7 @@ class RollingShutter : public testing::Test {
       const double x = normal(random), y = normal(random), z = normal(random);
       return sigma * Eigen::Vector3d(x, y, z);
     };
+    motions_.clear();
     for (std::size_t i = 0; i < scene_.frames.size(); ++i)
       motions_.push_back({draw(0.3), draw(0.2)});
   }
@@ -52,7 +58,9 @@ class RollingShutter : public testing::Test {
         const Eigen::Vector3d x =
             scene_.cam_from_world[frame_idx] * scene_.x_in_world.at(marker.marker_id)[c + 1];
         for (int k = 0; k < 20; ++k) {  // the row decides the time that decides the row
-          const double row = x_px.y() / scene_.camera.height_px - 0.5;
+          const double row = scene_.camera.width_px > scene_.camera.height_px
+                                 ? x_px.y() / scene_.camera.height_px - 0.5
+                                 : x_px.x() / scene_.camera.width_px - 0.5;
           x_px = ImageFromCam(scene_.camera,
                               x + (time_s + rolling_shutter_s * row) *
                                       (motion.linear_m_s + motion.angular_rad_s.cross(x)))
@@ -111,6 +119,15 @@ TEST_F(RollingShutter, IsFoundInEitherDirectionAndTakenOut) {
     EXPECT_THAT(summary.warnings, IsEmpty());
     EXPECT_EQ(without.uncertainty.rolling_shutter_sigma_s, 0);
   }
+}
+
+// A phone held upright: the rows of its sensor are the columns of the frames.
+TEST_F(RollingShutter, IsFoundInPortraitFrames) {
+  Stage(TurnCamera(scene_.camera, 1));
+  Film(-0.02, 0.02, 1);
+  const AdjustmentUncertainty found = Adjust().uncertainty;
+  EXPECT_NEAR(found.rolling_shutter_s, -0.02, 3 * found.rolling_shutter_sigma_s);
+  EXPECT_LT(found.rolling_shutter_sigma_s, 0.001);
 }
 
 TEST_F(RollingShutter, IsTheOptionsWhereTheyGiveIt) {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "importer/base/statistics.h"
+#include "importer/camera/turned_camera.h"
 
 namespace velamap {
 namespace {
@@ -179,6 +180,21 @@ TEST(CornerVelocities, PointsMoveToTheMiddleRow) {
   EXPECT_EQ(x_px(0, 1), Eigen::Vector2d(100, 240));
   EXPECT_LT((x_px(0, 2) - Eigen::Vector2d(99.5, 479)).norm(), 1e-12);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(x_px(1, i), image.points2D[i].x_in_image_px);
+}
+
+TEST(CornerVelocities, PortraitFramesAreReadColumnByColumn) {
+  const Camera landscape{CameraModel::kSimplePinhole, 640, 480, {500, 320, 240}};
+  const Camera portrait = TurnCamera(landscape, 1);
+  const Eigen::Vector2d x_px(100, 30), velocity_px_s(70, -20);
+  const Eigen::Vector2d turned_px = TurnInImage(landscape, 1, x_px);
+  const Eigen::Vector2d turned_velocity_px_s =
+      TurnInImage(landscape, 1, x_px + velocity_px_s) - turned_px;
+  // Turned clockwise, the first row of the sensor is the last column.
+  const Eigen::Vector2d shift_px = -ShutterDirection(portrait, turned_px, turned_velocity_px_s);
+  const Eigen::Vector2d expected_px =
+      TurnInImage(landscape, 1, x_px + ShutterDirection(landscape, x_px, velocity_px_s)) -
+      turned_px;
+  EXPECT_LT((shift_px - expected_px).norm(), 1e-12);
 }
 
 TEST(CornerVelocities, WayBackFromTheMiddleRowIsExact) {
