@@ -16,7 +16,7 @@ namespace {
 
 // The share of markers that are found is a logistic function of the pixels per cell on the narrow
 // side: where it is one half, and its width. All numbers here come from studies/shooting.sh.
-constexpr double kPxPerCellForHalf = 1.9, kPxPerCellWidth = 0.17;
+constexpr double kPxPerCellForHalf = 1.5, kPxPerCellWidth = 0.17;
 constexpr double kToleratedMotionCells = 0.5;
 
 double FoundShare(double narrow_px, int num_cells) {
