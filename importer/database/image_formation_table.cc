@@ -20,7 +20,6 @@ CREATE TABLE image_formation (
     s_amplitude REAL NOT NULL,
     sharpening REAL NOT NULL,
     sharpening_radius_px REAL NOT NULL,
-    sharpens_light INTEGER NOT NULL,
     ink_spread_sides REAL NOT NULL,
     edge_shift_blurs REAL NOT NULL,
     outline_shift_blurs REAL NOT NULL,
@@ -40,13 +39,13 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   database->exec("DROP TABLE IF EXISTS image_formation");
   database->exec(kFormationSchema);
   SQLite::Statement insert(
-      *database, "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      *database, "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
-               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.edge_shift_blurs,
-               found.outline_shift_blurs, found.outline_corner_weight, found.is_inverted ? 1 : 0,
-               found.quiet_zone_cells, found.quiet_zone_sigma_cells, estimate.num_samples,
-               estimate.noise_gray, estimate.inset_sigma_px);
+               found.ink_spread_sides, found.edge_shift_blurs, found.outline_shift_blurs,
+               found.outline_corner_weight, found.is_inverted ? 1 : 0, found.quiet_zone_cells,
+               found.quiet_zone_sigma_cells, estimate.num_samples, estimate.noise_gray,
+               estimate.inset_sigma_px);
   insert.exec();
 }
 
@@ -66,20 +65,18 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   const auto number = [&](const char* column, const OptionRange& range) {
     return CheckedNumber({path, "image_formation"}, column, range, &query);
   };
-  const OptionRange is_true = FromTo(0, 1);
   FormationEstimate estimate;
   ImageFormationParameters& found = estimate.parameters;
   found.gamma = number("gamma", FromTo(0.5, 5));
   found.s_amplitude = number("s_amplitude", FromTo(-0.15, 0.15));  // the curve rises everywhere
   found.sharpening = number("sharpening", FromTo(-0.9, 10));
   found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
-  found.sharpens_light = number("sharpens_light", is_true) != 0;
   found.ink_spread_sides =
       number("ink_spread_sides", FromTo(-kMaxInkSpreadSides, kMaxInkSpreadSides));
   found.edge_shift_blurs = number("edge_shift_blurs", FromTo(-2, 2));
   found.outline_shift_blurs = number("outline_shift_blurs", FromTo(-2, 2));
   found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));
-  found.is_inverted = number("is_inverted", is_true) != 0;
+  found.is_inverted = number("is_inverted", FromTo(0, 1)) != 0;
   found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));
   found.quiet_zone_sigma_cells = number("quiet_zone_sigma_cells", FromTo(0, 100));
   estimate.num_samples = static_cast<int>(number("num_samples", FromTo(0, 1e6)));

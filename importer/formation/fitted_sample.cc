@@ -45,31 +45,11 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat Differences(const FittedSample& sample) {
   return difference;
 }
 
-// Slopes of the tone curve at the pixels of the problem's box.
-cv::Mat ToneSlopes(const PatternProblem& problem, const ToneCurve& tone) {
-  cv::Mat slopes =
-      problem.patch.values(cv::Rect(PatchFromBox(problem), problem.box.size())).clone();
-  for (float& value : cv::Mat_<float>(slopes)) {
-    Floats slope;
-    tone.Encode(AllLanes(tone.Decode(value)), &slope);
-    value = slope[0];
-  }
-  return slopes;
-}
-
 // Modelled minus recorded grey values. The sharpening is applied to the differences again;
 // otherwise the apparent noise would depend on the sharpening.
 std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
   cv::Mat difference = Differences(sample);
-  const ImageFormationParameters& parameters = formation.parameters();
-  if (parameters.sharpening != 0 && parameters.sharpens_light) {
-    const cv::Mat slopes = ToneSlopes(sample.problem, formation.tone());
-    cv::divide(difference, slopes, difference);
-    Sharpen(parameters, cv::BORDER_CONSTANT, &difference);
-    cv::multiply(difference, slopes, difference);
-  } else if (parameters.sharpening != 0) {
-    Sharpen(parameters, cv::BORDER_CONSTANT, &difference);
-  }
+  Sharpen(formation.parameters(), cv::BORDER_CONSTANT, &difference);
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());
   for (const SamplePlace& place : sample.places) {

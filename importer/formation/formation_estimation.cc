@@ -18,26 +18,25 @@ using State = FormationState;
 // 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
 constexpr double kQuietZoneSigma = 0.25;
 
-// The samples fitted with a usual camera except for its gamma.
-State Start(const std::vector<FormationSample>& samples, const FormationPriors& priors,
-            double gamma, const ImageFormationParameters& formation, int num_threads) {
-  FormationVector start = priors.mean;
-  start[kLogGamma] = std::log(gamma);
-  return FitSamples(samples, start, formation, num_threads);
-}
-
-// The samples fitted with the gamma that leaves the least noise; none if no fit succeeds.
+// The samples fitted with a usual camera, except for the gamma and the sharpening that leave the
+// least noise; none if no fit succeeds. From a camera that hardly sharpens, the minimum of one that
+// sharpens much is not reached where white is clipped.
 State BestStart(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 const ImageFormationParameters& formation, int num_threads) {
-  constexpr double kGammas[] = {1.0, 1.5, 2.2};
+  constexpr double kGammas[] = {1.0, 1.5, 2.2}, kSharpenings[] = {0.1, 0.8};
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
-    State state = Start(samples, priors, gamma, formation, num_threads);
-    const double noise = NoiseOf(state);
-    if (noise < least_noise) {
-      least_noise = noise;
-      best = std::move(state);
+    for (const double sharpening : kSharpenings) {
+      FormationVector start = priors.mean;
+      start[kLogGamma] = std::log(gamma);
+      start[kSharpening] = sharpening;
+      State state = FitSamples(samples, start, formation, num_threads);
+      const double noise = NoiseOf(state);
+      if (noise < least_noise) {
+        least_noise = noise;
+        best = std::move(state);
+      }
     }
   }
   return best;
@@ -68,11 +67,10 @@ void Minimize(const FormationPriors& priors, int max_iterations, int num_threads
 // Minimizes without the pixels at the corners of outlines first, then with the weight that their
 // residuals ask for.
 State Minimized(const std::vector<FormationSample>& samples, const FormationPriors& priors,
-                bool is_inverted, bool sharpens_light, int num_threads) {
+                bool is_inverted, int num_threads) {
   constexpr int kMaxIterations = 6;
   ImageFormationParameters formation;
   formation.is_inverted = is_inverted;
-  formation.sharpens_light = sharpens_light;
   formation.quiet_zone_sigma_cells = kQuietZoneSigma;
   formation.outline_corner_weight = 0.0;
   State state = BestStart(samples, priors, formation, num_threads);
@@ -81,26 +79,6 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
   state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
   Minimize(priors, kMaxIterations, num_threads, &state);
   return state;
-}
-
-// Whether the camera sharpens light rather than grey values. Light has to explain the samples
-// clearly better, because both can explain noisy and compressed images. Gives all pixels the same
-// weights in both states, so that their costs can be compared.
-bool LightWins(const FormationPriors& priors, int num_threads, State* by_gray, State* by_light) {
-  constexpr double kClearlyLess = 0.9;
-  const double weight = std::min(OutlineCornerWeight(*by_gray), OutlineCornerWeight(*by_light));
-  *by_gray = WithOutlineCorners(weight, *by_gray, num_threads);
-  *by_light = WithOutlineCorners(weight, *by_light, num_threads);
-  std::vector<double> noises = NoisesOf(*by_gray);
-  const std::vector<double> noises_by_light = NoisesOf(*by_light);
-  for (std::size_t i = 0; i < noises.size(); ++i) {
-    noises[i] = std::min(noises[i], noises_by_light[i]);
-  }
-  const FormationProblem problem(priors, std::move(noises), num_threads);
-  const double cost_by_gray = problem.Cost(*by_gray), cost_by_light = problem.Cost(*by_light);
-  LogDebug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
-           cost_by_light);
-  return cost_by_light < kClearlyLess * cost_by_gray;
 }
 
 // Cameras denoise, sharpen and compress in ways that no parameter describes, and lenses do not blur
@@ -131,22 +109,17 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   constexpr int kFewIterations = 2;
   if (samples.size() < kMinFormationSamples) return Unknown();
-  // Some of the samples decide which description of the camera is right, and nearly give its
-  // parameters; then all take few steps.
+  // Some of the samples nearly give the parameters; then all take few steps.
   const FormationPriors priors = PriorsFor(samples);
-  State by_gray, by_light;
+  State likely;
   for (const std::vector<FormationSample>& some : {SomeOf(samples), samples}) {
-    by_gray = Minimized(some, priors, is_inverted, false, num_threads);
-    by_light = Minimized(some, priors, is_inverted, true, num_threads);
-    KeepOnly(by_light.sample_idxs, &by_gray);
-    KeepOnly(by_gray.sample_idxs, &by_light);
-    if (!by_gray.samples.empty()) break;
+    likely = Minimized(some, priors, is_inverted, num_threads);
+    if (!likely.samples.empty()) break;
   }
-  if (by_gray.samples.empty()) return Unknown();
-  const bool light_wins = LightWins(priors, num_threads, &by_gray, &by_light);
-  const State& likely = light_wins ? by_light : by_gray;
-  State winner = Start(samples, priors, std::exp(likely.parameters[kLogGamma]),
-                       likely.formation->parameters(), num_threads);
+  if (likely.samples.empty()) return Unknown();
+  FormationVector start = priors.mean;
+  start[kLogGamma] = likely.parameters[kLogGamma];
+  State winner = FitSamples(samples, start, likely.formation->parameters(), num_threads);
   if (winner.samples.size() < kMinFormationSamples) return Unknown();
   winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, num_threads);
   Minimize(priors, kFewIterations, num_threads, &winner);
@@ -159,18 +132,16 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
       std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
-  // Neither model describes a camera exactly, and they may differ by more than the noise explains.
-  const double by_choice_px = 0.5 * MeanInset(by_gray, by_light);
   const double by_model_px = InsetSigmaByModel(winner, balanced.state);
   const FormationProblem problem(priors, NoisesOf(winner), num_threads);
   const double by_parameters_px = problem.InsetSigma(winner);
   LogDebug(
-      "1 sigma of the inset by parameters {:.4f} px, what is sharpened {:.4f} px, the model {:.4f} "
-      "px, inner edges {:.4f} px, outlines {:.4f} px",
-      by_parameters_px, std::abs(by_choice_px), by_model_px, balanced.inset_sigma_px,
-      outlines.inset_sigma_px);
-  estimate.inset_sigma_px = std::hypot(std::hypot(by_parameters_px, by_choice_px, by_model_px),
-                                       balanced.inset_sigma_px, outlines.inset_sigma_px);
+      "1 sigma of the inset by parameters {:.4f} px, the model {:.4f} px, inner edges {:.4f} px, "
+      "outlines {:.4f} px",
+      by_parameters_px, by_model_px, balanced.inset_sigma_px, outlines.inset_sigma_px);
+  estimate.inset_sigma_px = Eigen::Vector4d(by_parameters_px, by_model_px, balanced.inset_sigma_px,
+                                            outlines.inset_sigma_px)
+                                .norm();
   return estimate;
 }
 

@@ -59,10 +59,8 @@ FormationState FitSamples(const std::vector<FormationSample>& samples, const For
     fitted[i] = FitSample(samples[i], *state.formation);
     if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
   });
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    if (!fitted[i]) continue;
-    state.samples.push_back(std::move(*fitted[i]));
-    state.sample_idxs.insert(i);
+  for (std::optional<FittedSample>& sample : fitted) {
+    if (sample) state.samples.push_back(std::move(*sample));
   }
   return state;
 }
@@ -71,7 +69,7 @@ FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
                           int num_threads) {
   FormationState moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
-                       state.sample_idxs, nullptr};
+                       nullptr};
   ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
     RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
@@ -147,21 +145,6 @@ double MeanInset(const FormationState& one, const FormationState& other) {
     ++count;
   }
   return count > 0 ? sum / count : 0.0;
-}
-
-void KeepOnly(const std::set<std::size_t>& sample_idxs, FormationState* state) {
-  std::vector<FittedSample> samples;
-  std::set<std::size_t> kept;
-  std::size_t i = 0;
-  for (const std::size_t sample_idx : state->sample_idxs) {
-    FittedSample& sample = state->samples[i++];
-    if (sample_idxs.count(sample_idx) == 0) continue;
-    samples.push_back(std::move(sample));
-    kept.insert(sample_idx);
-  }
-  if (kept.size() < state->sample_idxs.size()) state->moved.reset();
-  state->samples = std::move(samples);
-  state->sample_idxs = std::move(kept);
 }
 
 }  // namespace velamap

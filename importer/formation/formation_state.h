@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,7 +30,6 @@ struct FormationState {
   FormationVector parameters;
   std::shared_ptr<const ImageFormation> formation;
   std::vector<FittedSample> samples;
-  std::set<std::size_t> sample_idxs;  // of the samples that could be fitted, in the same order
   // The states after a step of each parameter alone, for derivatives by differences; null until
   // they are asked for.
   mutable std::shared_ptr<const std::vector<FormationState>> moved;
@@ -78,8 +76,5 @@ bool AreAlike(const FittedSample& one, const FittedSample& other);
 // By how much `one` has the corners farther inside their markers than `other`, along both sides:
 // the mean over the samples that are alike in both, px. Both must hold the same samples.
 double MeanInset(const FormationState& one, const FormationState& other);
-
-// Drops all samples but these.
-void KeepOnly(const std::set<std::size_t>& sample_idxs, FormationState* state);
 
 }  // namespace velamap

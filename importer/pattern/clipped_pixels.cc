@@ -41,7 +41,8 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
                           const PatternParameters::Vector& parameters, PatternProblem* problem) {
   GrayPatch& patch = problem->patch;
-  const cv::Mat expected = Sharpened(ModelPatch(*problem, parameters), formation);
+  cv::Mat expected = ModelPatch(*problem, parameters);
+  Sharpen(formation.parameters(), cv::BORDER_REPLICATE, &expected);
   const cv::Rect patch_box(patch.origin_px, patch.values.size());
   const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
   const cv::Rect wide =

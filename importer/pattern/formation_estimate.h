@@ -4,8 +4,7 @@
 //   camera     edges move by edge_shift_blurs (sigmas of the blur) towards the light side, and the
 //              outline of the black square by a further outline_shift_blurs outwards
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
-//   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
-//              tone curve;  G is a Gaussian of sharpening_radius_px
+//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of sharpening_radius_px
 //
 // A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
@@ -33,9 +32,6 @@ struct ImageFormationParameters {
   // The images hold 255 minus the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
-  // Sharpening of light, before the tone curve, which makes dark halos strong and bright ones weak.
-  // Chosen only if it explains the samples clearly better than sharpened grey values do.
-  bool sharpens_light = false;
   // The quiet zone around the black squares of all markers: mean width and 1 sigma of a side, as
   // the prior of each fit. A sigma of 0: unknown.
   double quiet_zone_cells = 1.0;

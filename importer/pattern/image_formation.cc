@@ -90,20 +90,6 @@ double ToneCurve::Decode(double gray) const {
   return root * root;
 }
 
-VELAMAP_CLONE_FOR_AVX2 void ToneCurve::Encode(cv::Mat* values) const {
-  if (is_linear_) return;
-  for (int row = 0; row < values->rows; ++row) {
-    auto* value = values->ptr<float>(row);
-    for (int left = values->cols; left > 0; left -= kLanes, value += kLanes) {
-      const std::size_t size = sizeof(float) * static_cast<std::size_t>(std::min(left, kLanes));
-      Floats group{}, slope;
-      std::memcpy(&group, value, size);
-      group = Encode(group, &slope);
-      std::memcpy(value, &group, size);
-    }
-  }
-}
-
 void ToneCurve::Decode(cv::Mat* values) const {
   if (is_linear_) return;
   for (float& value : cv::Mat_<float>(*values)) {
@@ -130,32 +116,19 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   }
   const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
-  const bool of_light = formation.parameters().sharpens_light;
-  cv::Mat values, filtered;
-  gray(wide).convertTo(values, CV_32F);
-  if (of_light) formation.tone().Decode(&values);
-  cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
+  cv::Mat filtered;
+  cv::filter2D(gray(wide), filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
   patch.values = filtered(inside - wide.tl()).clone();
-  if (of_light) formation.tone().Encode(&patch.values);
   return patch;
 }
 
 void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* values) {
+  if (parameters.sharpening == 0) return;
   cv::Mat blurred;
   cv::GaussianBlur(*values, blurred, {0, 0}, parameters.sharpening_radius_px,
                    parameters.sharpening_radius_px, border);
   *values = (1 + parameters.sharpening) * *values - parameters.sharpening * blurred;
-}
-
-cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation) {
-  const ImageFormationParameters& parameters = formation.parameters();
-  cv::Mat sharpened = values.clone();
-  if (parameters.sharpening == 0) return sharpened;
-  if (parameters.sharpens_light) formation.tone().Decode(&sharpened);
-  Sharpen(parameters, cv::BORDER_REPLICATE, &sharpened);
-  if (parameters.sharpens_light) formation.tone().Encode(&sharpened);
-  return sharpened;
 }
 
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {

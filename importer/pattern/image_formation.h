@@ -45,9 +45,7 @@ class ToneCurve {
   double Encode(double light) const;
   double Decode(double gray) const;  // the inverse
 
-  // The same of every value of a matrix of CV_32F.
-  void Encode(cv::Mat* values) const;
-  void Decode(cv::Mat* values) const;
+  void Decode(cv::Mat* values) const;  // each value of a matrix of CV_32F
 
  private:
   static constexpr int kSteps = 512;
@@ -92,11 +90,8 @@ struct GrayPatch {
 // Cuts the part of the image (8 bit or CV_32F) within `box`, which may reach beyond the image.
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation);
 
-// Sharpens values (CV_32F); `border` is one of OpenCV's kinds.
+// Sharpens grey values (CV_32F); `border` is one of OpenCV's kinds.
 void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* values);
-
-// Grey values (CV_32F) as the camera sharpens them.
-cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation);
 
 // Bilinear value at a place in OpenCV's pixel frame of the image; places outside the patch take the
 // nearest value inside.

@@ -245,7 +245,7 @@ std::vector<BadInput> ImageFormations() {
       {"sharpening", "-1"},
       {"sharpening", "1e9"},
       {"sharpening_radius_px", "0"},
-      {"sharpens_light", "7"},
+      {"is_inverted", "7"},
       {"noise_gray", "-1"},
       {"inset_sigma_px", "'text'"},
       {"ink_spread_sides", "0.5"},

@@ -16,7 +16,7 @@ TEST(ImageFormationTable, HoldsOneRow) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   FormationEstimate estimate;
-  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, 0.1, true, true, 0.7, 0.15, 0.3};
+  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, 0.1, true, 0.7, 0.15, 0.3};
   estimate.num_samples = 31;
   estimate.noise_gray = 2.5;
   estimate.inset_sigma_px = 0.012;
@@ -37,7 +37,6 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->parameters.outline_shift_blurs, 0.1);
   EXPECT_EQ(read->parameters.outline_corner_weight, 0.3);
   EXPECT_TRUE(read->parameters.is_inverted);
-  EXPECT_TRUE(read->parameters.sharpens_light);
   EXPECT_EQ(read->parameters.quiet_zone_cells, 0.7);
   EXPECT_EQ(read->parameters.quiet_zone_sigma_cells, 0.15);
   EXPECT_EQ(read->num_samples, 31);

@@ -225,15 +225,15 @@ void Sharpen(const ImageFormationParameters& camera, cv::Mat* image) {
 }
 
 // From light to grey values, as importer/pattern/formation_estimate.h has it but computed anew.
-void ApplyCamera(const ImageFormationParameters& camera, cv::Mat* image) {
-  if (camera.sharpens_light) Sharpen(camera, image);
+void ApplyCamera(const ImageFormationParameters& camera, bool sharpens_light, cv::Mat* image) {
+  if (sharpens_light) Sharpen(camera, image);
   if (camera.gamma != 1 || camera.s_amplitude != 0) {
     image->forEach<float>([&camera](float& value, const int*) {
       const double v = std::pow(std::max(0.0, value / 255.0), 1 / camera.gamma);
       value = static_cast<float>(255 * (v - camera.s_amplitude * std::sin(2 * kPi * v)));
     });
   }
-  if (!camera.sharpens_light) Sharpen(camera, image);
+  if (!sharpens_light) Sharpen(camera, image);
 }
 
 }  // namespace
@@ -261,7 +261,7 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
     const int reach = static_cast<int>(std::ceil(4 * options.blur_sigma_px));
     cv::GaussianBlur(image, image, {2 * reach + 1, 2 * reach + 1}, options.blur_sigma_px);
   }
-  ApplyCamera(options.camera, &image);
+  ApplyCamera(options.camera, options.sharpens_light, &image);
   if (options.noise_sigma > 0) {
     cv::Mat noise(image.size(), CV_32FC1);
     random.fill(noise, cv::RNG::NORMAL, 0.0, options.noise_sigma);
