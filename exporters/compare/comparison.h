@@ -43,8 +43,8 @@ struct SeriesReference {
   SeriesReference(UncertainShape reference)
       : uncertain(std::move(reference)), surfaces(uncertain.shape) {}
 
-  const UncertainShape uncertain;
-  const ShapeSurfaces surfaces;
+  UncertainShape uncertain;
+  ShapeSurfaces surfaces;
 };
 
 // Throw the errors of CompareWithShape() and CompareWithMesh().

@@ -76,9 +76,7 @@ void EmitDistance(const KnownDistance& distance, YAML::Emitter* out) {
   *out << "to" << PointName(distance.marker_id2, distance.corner2);
   *out << "length" << Number(distance.length_m);
   *out << "sigma" << Number(distance.sigma_m);
-  if (distance.is_scale_bar)
-    *out << "use"
-         << "scale";
+  if (distance.is_scale_bar) *out << "use" << std::string("scale");
   *out << YAML::EndMap;
 }
 
@@ -90,9 +88,7 @@ void EmitKnownPoint(const KnownPoint& point, YAML::Emitter* out) {
     *out << kAxisNames[axis] << Number(*point.x_m[axis]);
   }
   *out << "sigma" << Number(point.sigma_m);
-  if (point.is_check)
-    *out << "use"
-         << "check";
+  if (point.is_check) *out << "use" << std::string("check");
   *out << YAML::EndMap;
 }
 
