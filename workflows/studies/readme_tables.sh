@@ -34,6 +34,7 @@ awk_library='
   function num(x, format,    digits, magnitude, exponent, decimals) {
     if (x == "") return "-"
     if (format == "as_is") return x
+    if (x == 0) x = 0  # instead of -0
     if (format == "d") return sprintf("%.0f", x)
     if (format ~ /%$/) x *= 100
     digits = format; gsub(/[+%]/, "", digits)
