@@ -52,7 +52,7 @@ void WriteLongClip(int num_frames, const fs::path& path) {
   cv::VideoWriter video(path.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25.0,
                         {kWidth, kHeight});
   RenderOptions render;
-  render.supersampling = 2;
+  render.supersampling = 1;
   render.color = true;
   for (int i = 0; i < num_frames; ++i) video << RenderFrame(scene, i, render);
 }
@@ -64,7 +64,7 @@ void MakeSandbox(const fs::path& dir) {
   cv::VideoWriter video(dir / "clip.avi", cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
                         {kWidth, kHeight});
   RenderOptions render;
-  render.supersampling = 4;
+  render.supersampling = 2;
   render.color = true;
   for (int i = 0; i < kNumImages; ++i) {
     const cv::Mat picture = RenderFrame(scene, i, render);

@@ -12,4 +12,5 @@ velamap_test(
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc
-    ../support/render/marker_renderer_test.cc)
+    ../support/render/marker_renderer_test.cc
+    ../support/render/picture_effects_test.cc)

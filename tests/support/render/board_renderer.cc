@@ -6,8 +6,10 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/camera/calibration.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/geometry/units.h"
+#include "tests/support/render/picture_effects.h"
 
 namespace velamap {
 namespace {
@@ -96,9 +98,11 @@ PrintedBoard PrintMarkerGrid(int num_columns, int num_rows, const Dictionary& di
 cv::Mat RenderBoard(const Camera& camera, const Rigid3& cam_from_board, const PrintedBoard& board,
                     const BoardRenderOptions& options) {
   const Rigid3 board_from_cam = Inverse(cam_from_board);
-  const std::vector<Eigen::Vector3d> rays = RaysOfPixelCorners(camera);
+  const Camera fine_camera = ScaleToImageSize(camera, kFinePerSensorPx * camera.width_px,
+                                              kFinePerSensorPx * camera.height_px, "");
+  const std::vector<Eigen::Vector3d> rays = RaysOfPixelCorners(fine_camera);
   const int num = options.supersampling;
-  cv::Mat picture(camera.height_px, camera.width_px, CV_32F);
+  cv::Mat fine(fine_camera.height_px, fine_camera.width_px, CV_32F);
   const auto gray_at = [&](const Eigen::Vector3d& ray) {
     const Eigen::Vector3d direction = board_from_cam.rotation * ray;
     const double depth = -board_from_cam.translation.z() / direction.z();
@@ -106,10 +110,10 @@ cv::Mat RenderBoard(const Camera& camera, const Rigid3& cam_from_board, const Pr
     const Eigen::Vector3d on_board = board_from_cam.translation + depth * direction;
     return GrayOnBoard(board, on_board.head<2>(), options);
   };
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      const Eigen::Vector3d* above = &rays[static_cast<std::size_t>(y * (picture.cols + 1) + x)];
-      const Eigen::Vector3d* below = above + picture.cols + 1;
+  for (int y = 0; y < fine.rows; ++y) {
+    for (int x = 0; x < fine.cols; ++x) {
+      const Eigen::Vector3d* above = &rays[static_cast<std::size_t>(y * (fine.cols + 1) + x)];
+      const Eigen::Vector3d* below = above + fine.cols + 1;
       double sum = 0.0;
       for (int i = 0; i < num * num; ++i) {
         // No two samples of a pixel share a row or column, which matters for edges along these.
@@ -118,10 +122,11 @@ cv::Mat RenderBoard(const Camera& camera, const Rigid3& cam_from_board, const Pr
         sum += gray_at((1 - v) * ((1 - u) * above[0] + u * above[1]) +
                        v * ((1 - u) * below[0] + u * below[1]));
       }
-      picture.at<float>(y, x) = static_cast<float>(sum / (num * num));
+      fine.at<float>(y, x) = static_cast<float>(sum / (num * num));
     }
   }
-  if (options.blur_sigma_px > 0) cv::GaussianBlur(picture, picture, {0, 0}, options.blur_sigma_px);
+  LensBlur(options.blur_sigma_px, &fine);
+  cv::Mat picture = OnSensor(fine);
   std::mt19937 generator(options.seed);
   std::normal_distribution<float> noise(0.0F, static_cast<float>(options.noise_sigma));
   if (options.noise_sigma > 0) {

@@ -9,7 +9,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/camera/calibration.h"
 #include "importer/geometry/units.h"
+#include "tests/support/render/picture_effects.h"
 
 namespace velamap {
 namespace {
@@ -194,7 +196,7 @@ void DrawPrint(const Camera& camera, const PlacedMarkerInCam& marker, const Prin
 }
 
 cv::Mat MakeBackground(const cv::Size& size, const RenderOptions& options, cv::RNG* random) {
-  constexpr int kPatchPx = 6;
+  constexpr int kPatchPx = 6 * kFinePerSensorPx;
   cv::Mat background(size, CV_32FC1, cv::Scalar(options.background));
   if (options.background_texture > 0) {
     cv::Mat coarse(size.height / kPatchPx + 1, size.width / kPatchPx + 1, CV_32FC1);
@@ -242,7 +244,9 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
                       const Dictionary& dictionary, int border_bits, const RenderOptions& options) {
   VELAMAP_CHECK(camera.width_px > 0 && camera.height_px > 0 && options.supersampling > 0);
   cv::RNG random(options.seed);
-  cv::Mat image = MakeBackground({camera.width_px, camera.height_px}, options, &random);
+  const Camera fine_camera = ScaleToImageSize(camera, kFinePerSensorPx * camera.width_px,
+                                              kFinePerSensorPx * camera.height_px, "");
+  cv::Mat fine = MakeBackground({fine_camera.width_px, fine_camera.height_px}, options, &random);
   std::vector<PlacedMarkerInCam> far_first;
   std::copy_if(markers.begin(), markers.end(), std::back_inserter(far_first), IsVisible);
   std::stable_sort(far_first.begin(), far_first.end(), [](const auto& a, const auto& b) {
@@ -254,13 +258,11 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
   const std::vector<Eigen::Vector2d> pattern = SamplePattern(options.supersampling);
   for (const PlacedMarkerInCam& marker : far_first) {
     const Print print(dictionary, border_bits, marker.marker_id, options);
-    DrawPrint(camera, marker, print, pattern, &image);
+    DrawPrint(fine_camera, marker, print, pattern, &fine);
   }
+  LensBlur(options.blur_sigma_px, &fine);
+  cv::Mat image = OnSensor(fine);
   if (options.light_gradient != 0) ApplyLight(options.light_gradient, &image);
-  if (options.blur_sigma_px > 0) {
-    const int reach = static_cast<int>(std::ceil(4 * options.blur_sigma_px));
-    cv::GaussianBlur(image, image, {2 * reach + 1, 2 * reach + 1}, options.blur_sigma_px);
-  }
   ApplyCamera(options.camera, options.sharpens_light, &image);
   if (options.noise_sigma > 0) {
     cv::Mat noise(image.size(), CV_32FC1);

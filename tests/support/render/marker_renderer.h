@@ -1,6 +1,6 @@
 // Renders pictures of markers with exact truth. Every pixel is the mean over its area of what the
-// camera sees there; blur and noise are added afterwards. Image frame as in COLMAP: the centre of
-// the first pixel is at (0.5, 0.5). The same options give the same bytes.
+// camera sees there, blurred by its lens; noise is added afterwards. Image frame as in COLMAP: the
+// centre of the first pixel is at (0.5, 0.5). The same options give the same bytes.
 
 #pragma once
 
@@ -37,7 +37,7 @@ struct RenderOptions {
   ImageFormationParameters camera{};  // tone curve and sharpening; the ink spread is not used
   bool sharpens_light = false;        // before the tone curve instead of after it
   double noise_sigma = 0.0;           // grey levels
-  int supersampling = 8;              // number of samples along each side of a pixel
+  int supersampling = 6;              // number of samples along each side of half a pixel
   bool color = false;                 // BGR with three equal channels instead of grey
   std::uint32_t seed = 1;             // of texture and noise
 };

@@ -31,16 +31,23 @@ cv::Mat MotionKernel(double length_px, double angle_rad) {
 
 }  // namespace
 
-void MotionBlur(double length_px, double angle_rad, cv::Mat* image) {
+void MotionBlur(double length_px, double angle_rad, cv::Mat* fine) {
   if (length_px <= 0) return;
-  cv::filter2D(*image, *image, -1, MotionKernel(length_px, angle_rad), {-1, -1}, 0,
+  cv::filter2D(*fine, *fine, -1, MotionKernel(kFinePerSensorPx * length_px, angle_rad), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
 }
 
-void LensBlur(double sigma_px, cv::Mat* image) {
+void LensBlur(double sigma_px, cv::Mat* fine) {
   if (sigma_px <= 0) return;
-  const int size = 2 * static_cast<int>(std::ceil(4 * sigma_px)) + 1;
-  cv::GaussianBlur(*image, *image, {size, size}, sigma_px, 0, cv::BORDER_REPLICATE);
+  const double sigma_fine_px = kFinePerSensorPx * sigma_px;
+  const int size = 2 * static_cast<int>(std::ceil(4 * sigma_fine_px)) + 1;
+  cv::GaussianBlur(*fine, *fine, {size, size}, sigma_fine_px, 0, cv::BORDER_REPLICATE);
+}
+
+cv::Mat OnSensor(const cv::Mat& fine) {
+  cv::Mat image;
+  cv::resize(fine, image, fine.size() / kFinePerSensorPx, 0, 0, cv::INTER_AREA);
+  return image;
 }
 
 void AddNoise(double sigma, double shot_sigma, std::uint64_t seed, cv::Mat* image) {

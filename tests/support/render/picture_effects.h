@@ -1,4 +1,4 @@
-// Effects of lens, exposure and sensor on a picture (CV_32FC3, linear light, 255 for white). All
+// Effects of lens, exposure and sensor on a picture (CV_32F, linear light, 255 for white). All
 // kernels are symmetric, so they do not displace anything.
 
 #pragma once
@@ -9,16 +9,26 @@
 
 namespace velamap {
 
-// Blurs the picture as if it moved by `length_px` at constant speed during the exposure, whose
-// middle is the time of the truth. The angle of the motion is from the image's x towards y.
-void MotionBlur(double length_px, double angle_rad, cv::Mat* image);
+// Lenses and motion blur the light before the sensor takes its means over pixels. A picture is
+// therefore drawn this many times as fine as the sensor along both sides until it is blurred:
+// kernels of less than a pixel that act on the sensor's pixels spread light in steps of a pixel,
+// as no lens does, and the estimate of camera and print takes that for sharpening and a tone curve.
+constexpr int kFinePerSensorPx = 2;
 
-// Gaussian blur.
-void LensBlur(double sigma_px, cv::Mat* image);
+// Blurs a fine picture as if it moved by `length_px` (of the sensor) at constant speed during the
+// exposure, whose middle is the time of the truth. The angle of the motion is from the image's x
+// towards y.
+void MotionBlur(double length_px, double angle_rad, cv::Mat* fine);
 
-// Adds the same Gaussian noise to all three channels, because a video keeps only the luma of the
-// sensor's noise. Its variance is sigma^2 (read noise) plus shot_sigma^2 * light / 255 (shot
-// noise), with the light of the middle channel.
+// Gaussian blur of a fine picture; its sigma is in px of the sensor.
+void LensBlur(double sigma_px, cv::Mat* fine);
+
+// The means of a fine picture over the sensor's pixels.
+cv::Mat OnSensor(const cv::Mat& fine);
+
+// Adds the same Gaussian noise to all three channels of a picture, because a video keeps only the
+// luma of the sensor's noise. Its variance is sigma^2 (read noise) plus shot_sigma^2 * light / 255
+// (shot noise), with the light of the middle channel.
 void AddNoise(double sigma, double shot_sigma, std::uint64_t seed, cv::Mat* image);
 
 }  // namespace velamap

@@ -69,7 +69,7 @@ double Shade(const Eigen::Vector3d& normal) {
 }
 
 struct Patch {
-  ImageQuad quad;
+  ImageQuad quad;  // of the fine picture
   double shade;
 };
 
@@ -78,7 +78,7 @@ std::optional<Patch> MakePatch(const std::array<const Vertex*, 4>& corners) {
   Patch patch;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!corners[i]->x_in_image_px) return std::nullopt;
-    patch.quad[i] = *corners[i]->x_in_image_px;
+    patch.quad[i] = kFinePerSensorPx * *corners[i]->x_in_image_px;
   }
   if (SignedArea(patch.quad) <= 0) return std::nullopt;
   patch.shade = Shade((corners[3]->x_in_world - corners[1]->x_in_world)
@@ -118,9 +118,18 @@ void DrawMarker(const FrameView& view, const ClipMarker& marker,
   });
 }
 
+// A surface that folds over itself counts twice.
+void CountFoldsOnce(cv::Mat* surfaces) {
+  surfaces->forEach<cv::Vec2f>([](cv::Vec2f& sums, const int*) {
+    if (sums[1] > 1) sums /= sums[1];
+  });
+}
+
+// Grey levels, times opacity, and opacity (CV_32FC2) in the fine picture.
 cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view,
                      const SurfaceRenderOptions& options) {
-  CoverageImage image(scene.camera.width_px, scene.camera.height_px);
+  CoverageImage image(kFinePerSensorPx * scene.camera.width_px,
+                      kFinePerSensorPx * scene.camera.height_px);
   for (const ClipSheet& sheet : scene.sheets) {
     ForEachPatch(view, sheet, [&](int, int, const Patch& patch) {
       image.Add(patch.quad, patch.shade * sheet.gray, 1.0);
@@ -132,7 +141,17 @@ cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view,
     if (patch) image.Add(patch->quad, patch->shade * paint.gray_change, 0.0);
   }
   for (const ClipMarker& marker : scene.markers) DrawMarker(view, marker, options, &image);
-  return image.Resolve();
+  cv::Mat surfaces = image.Resolve();
+  CountFoldsOnce(&surfaces);
+  return surfaces;
+}
+
+// A fine picture as lens, motion and the means over the sensor's pixels leave it.
+cv::Mat Exposed(const SurfaceRenderOptions& options, int frame_idx, cv::Mat fine) {
+  constexpr double kGoldenAngle_rad = 2.399963;
+  MotionBlur(options.motion_blur_px, kGoldenAngle_rad * frame_idx, &fine);
+  LensBlur(options.blur_px, &fine);
+  return OnSensor(fine);
 }
 
 // BGR of the far world in a direction: sea, haze at the horizon, sky.
@@ -164,7 +183,7 @@ cv::Mat DrawSky(const ClipScene& scene, const FrameView& view) {
 }
 
 // Boards and squares of all kinds on a plane behind the scene, some in a white frame as a marker.
-void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* image) {
+void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* fine) {
   constexpr int kShift = 4;
   std::mt19937 random(scene.options.seed + 29);
   const auto between = [&](double low, double high) {
@@ -178,10 +197,12 @@ void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* image) 
       const auto x = view.Image({middle_m.x() + right * half_m.x() + skew * up, behind_m,
                                  middle_m.y() + up * half_m.y()});
       if (!x || x->norm() > 4 * scene.camera.width_px) return;
-      corners.emplace_back(static_cast<int>(std::lround((x->x() - 0.5) * (1 << kShift))),
-                           static_cast<int>(std::lround((x->y() - 0.5) * (1 << kShift))));
+      const Eigen::Vector2d shifted =
+          (kFinePerSensorPx * *x - Eigen::Vector2d::Constant(0.5)) * (1 << kShift);
+      corners.emplace_back(static_cast<int>(std::lround(shifted.x())),
+                           static_cast<int>(std::lround(shifted.y())));
     }
-    cv::fillConvexPoly(*image, corners, color, cv::LINE_8, kShift);
+    cv::fillConvexPoly(*fine, corners, color, cv::LINE_8, kShift);
   };
   const double reach_m = 2.2 * scene.options.distance_m;
   for (int i = 0; i < 260; ++i) {
@@ -202,10 +223,7 @@ void Compose(const cv::Mat& surfaces, cv::Mat* image) {
     const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
     cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
     for (int column = 0; column < image->cols; ++column) {
-      const float alpha = sums[column][1];
-      // A surface that folds over itself counts twice.
-      const float gray = alpha > 1 ? sums[column][0] / alpha : sums[column][0];
-      pixels[column] = cv::Vec3f::all(gray) + std::max(0.0F, 1 - alpha) * pixels[column];
+      pixels[column] = cv::Vec3f::all(sums[column][0]) + (1 - sums[column][1]) * pixels[column];
     }
   }
 }
@@ -228,8 +246,7 @@ void DrawReflection(const Eigen::Vector2d& middle, const Eigen::Matrix2d& image_
       const Eigen::Vector2d offset(column + 0.5 - middle.x(), row + 0.5 - middle.y());
       const double radius2 = (patch_from_image * offset).squaredNorm();
       if (radius2 > kMaxRadius2) continue;
-      const double cover = std::min(1.0F, sums[column][1]);
-      const double glare = cover * std::min(1.0, 1.4 * std::exp(-radius2));
+      const double glare = sums[column][1] * std::min(1.0, 1.4 * std::exp(-radius2));
       pixels[column] += static_cast<float>(glare) * (cv::Vec3f::all(252) - pixels[column]);
     }
   }
@@ -275,15 +292,17 @@ void SurfaceRenderOptions::Check() const {
 cv::Mat RenderClipFrame(const ClipScene& scene, const SurfaceRenderOptions& options,
                         int frame_idx) {
   const FrameView view(scene, frame_idx);
-  const cv::Mat surfaces = DrawSurfaces(scene, view, options);
-  cv::Mat image = DrawSky(scene, view);
-  if (scene.options.busy) DrawClutter(scene, view, &image);
+  const cv::Mat surfaces = Exposed(options, frame_idx, DrawSurfaces(scene, view, options));
+  cv::Mat image = DrawSky(scene, view);  // smooth, so that blur does not change it
+  if (scene.options.busy) {
+    cv::Mat fine;
+    cv::resize(image, fine, image.size() * kFinePerSensorPx, 0, 0, cv::INTER_LINEAR);
+    DrawClutter(scene, view, &fine);
+    image = Exposed(options, frame_idx, fine);
+  }
   Compose(surfaces, &image);
   AddReflections(scene, view, options.num_reflections, surfaces, &image);
   if (options.glare > 0) image += cv::Scalar::all(kFullLight * options.glare);
-  constexpr double kGoldenAngle_rad = 2.399963;
-  MotionBlur(options.motion_blur_px, kGoldenAngle_rad * frame_idx, &image);
-  LensBlur(options.blur_px, &image);
   const auto seed = static_cast<std::uint64_t>(scene.options.seed) << 32;
   AddNoise(options.noise, options.shot_noise, seed + static_cast<std::uint64_t>(frame_idx) + 1,
            &image);

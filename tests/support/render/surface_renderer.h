@@ -1,8 +1,8 @@
-// Renders the frames of a clip as a camera takes them. Surfaces with their markers, sea, sky and
-// reflections are drawn in linear light, to which veiling glare, motion and lens blur and noise are
-// applied. The response of the camera (camera_response.h) and 8 bits come last; with a linear
-// response and no glare, grey values equal light. The same scene, options and frame give the same
-// bytes. Several threads may render frames.
+// Renders the frames of a clip as a camera takes them. Surfaces with their markers are drawn in
+// linear light and blurred by lens and motion before the sensor takes its means over pixels; sea,
+// sky, reflections, veiling glare and noise are added. The response of the camera
+// (camera_response.h) and 8 bits come last; with a linear response and no glare, grey values equal
+// light. The same scene, options and frame give the same bytes. Several threads may render frames.
 
 #pragma once
 

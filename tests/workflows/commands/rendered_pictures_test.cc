@@ -42,7 +42,7 @@ SyntheticScene MakeSail() {
 
 std::vector<cv::Mat> RenderAll(const SyntheticScene& scene) {
   RenderOptions options;
-  options.supersampling = 4;
+  options.supersampling = 2;
   options.noise_sigma = 1.0;
   std::vector<cv::Mat> frames;
   for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) {

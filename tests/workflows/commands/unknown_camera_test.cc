@@ -32,7 +32,7 @@ class UnknownCameraTest : public ::testing::Test {
     scene_ = new SyntheticScene(MakeSyntheticScene(options));
     photos_ = new TempDir;
     RenderOptions rendering;
-    rendering.supersampling = 4;
+    rendering.supersampling = 2;
     rendering.noise_sigma = 1.0;
     for (int i = 0; i < options.num_frames; ++i) {
       rendering.seed = static_cast<std::uint32_t>(i + 1);
