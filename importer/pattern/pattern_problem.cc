@@ -211,6 +211,17 @@ std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSqua
                   cv::Point(static_cast<int>(high.x()) + 1, static_cast<int>(high.y()) + 1));
 }
 
+// The surroundings are read with the levels, the blur and the widths of the quiet zone that are
+// known by then. If these were wrong, as under a wide blur or where a background brighter than the
+// paper was taken for the quiet zone, the fit moves the contrast of the surroundings away from what
+// was read, and its prior moves the edges.
+bool NeedsAnotherPass(const PatternProblem& problem, const PatternMinimum& minimum) {
+  constexpr double kWideBlur = 0.3;          // cells
+  constexpr double kMaxContrastError = 0.1;  // relative
+  return BlurInCells(minimum.parameters, problem.model.num_cells).maxCoeff() > kWideBlur ||
+         std::abs(minimum.parameters[P::kSurround] - 1) > kMaxContrastError;
+}
+
 }  // namespace
 
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
@@ -263,16 +274,14 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
   return Minimize(*problem, max_pixels, tolerance_px, minimum);
 }
 
-// A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kCoarsePx = 0.1;
-  constexpr double kWideBlur = 0.3;  // cells
+  constexpr int kMaxPasses = 2;  // after the first fine one
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
   if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
-  if (BlurInCells(minimum->parameters, problem->model.num_cells).maxCoeff() > kWideBlur &&
-      !RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) {
-    return false;
+  for (int i = 0; i < kMaxPasses && NeedsAnotherPass(*problem, *minimum); ++i) {
+    if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
   }
   const double contrast = ContrastOf(*problem, *minimum);
   return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;

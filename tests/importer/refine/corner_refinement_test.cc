@@ -135,6 +135,35 @@ TEST(RefineCorners, OutlinesFoundFarInsideSmallMarkersGrow) {
   }
 }
 
+// Cloth that is brighter than the paper is taken for the quiet zone at first.
+TEST(RefineCorners, BrightClothBehindNarrowQuietZonesMovesNoCorner) {
+  for (const double quiet_zone_cells : {0.3, 0.4, 0.5}) {
+    for (const double cloth_by_paper : {1.15, 1.3}) {
+      SCOPED_TRACE(testing::Message() << quiet_zone_cells << " cells, " << cloth_by_paper);
+      MarkerGridOptions options;
+      options.dictionary = "DICT_4X4_50";
+      options.side_px = 42;
+      options.rendering.white = 170;
+      options.rendering.background = cloth_by_paper * options.rendering.white;
+      options.rendering.quiet_zone_cells = quiet_zone_cells;
+      options.rendering.blur_sigma_px = 0.6;
+      options.rendering.noise_sigma = 1.0;
+      ImageFormationParameters parameters;
+      parameters.quiet_zone_cells = quiet_zone_cells;
+      parameters.quiet_zone_sigma_cells = 0.1;
+      const ImageFormation formation(parameters);
+      const Quality fitted =
+          Measure(MakeMarkerGrid(options),
+                  [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
+                    return RefineCorners(gray, start, cells, formation);
+                  });
+      EXPECT_EQ(fitted.num_failed, 0);
+      EXPECT_LT(std::abs(fitted.bias_px), 0.004);
+      EXPECT_LT(fitted.rms_px, 0.02);
+    }
+  }
+}
+
 // From the left to the right side of the truth, at these heights (0 top, 1 bottom).
 void DrawRope(const QuadCorners& truth, double left, double right, double gray, cv::Mat* image) {
   constexpr double kBeyond = 0.4;  // sides
