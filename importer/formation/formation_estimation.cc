@@ -85,10 +85,10 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
 // like a Gaussian. How far edges are moved beyond what the parameters explain, and how far inner
 // edges lie from where the best parameters leave them, shows how far a camera is from the model.
 // Half of the latter shift and 0.5 % of the blur are the errors of the insets of 64 cameras that
-// another renderer drew; a tenth of the former is that of pictures after medians and bilateral
+// another renderer drew; a twentieth of the former is that of pictures after medians and bilateral
 // filters.
 double InsetSigmaByModel(const State& winner, const State& balanced) {
-  constexpr double kOfBlur = 0.005, kOfInnerShift = 0.5, kOfEdgeShift = 0.1;
+  constexpr double kOfBlur = 0.005, kOfInnerShift = 0.5, kOfEdgeShift = 0.05;
   std::vector<double> blurs_px;
   for (const FittedSample& sample : winner.samples) {
     blurs_px.push_back(sample.minimum.parameters.segment<2>(PatternParameters::kBlurU).mean());

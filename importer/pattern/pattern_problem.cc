@@ -216,8 +216,8 @@ std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSqua
 // paper was taken for the quiet zone, the fit moves the contrast of the surroundings away from what
 // was read, and its prior moves the edges.
 bool NeedsAnotherPass(const PatternProblem& problem, const PatternMinimum& minimum) {
-  constexpr double kWideBlur = 0.3;          // cells
-  constexpr double kMaxContrastError = 0.1;  // relative
+  constexpr double kWideBlur = 0.3;           // cells
+  constexpr double kMaxContrastError = 0.03;  // relative
   return BlurInCells(minimum.parameters, problem.model.num_cells).maxCoeff() > kWideBlur ||
          std::abs(minimum.parameters[P::kSurround] - 1) > kMaxContrastError;
 }
@@ -276,7 +276,7 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
 
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kCoarsePx = 0.1;
-  constexpr int kMaxPasses = 2;  // after the first fine one
+  constexpr int kMaxPasses = 3;  // after the first fine one
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
   if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;

@@ -196,17 +196,20 @@ class BlurredSmallMarkers : public testing::Test {
 
 TEST_F(BlurredSmallMarkers, AreFoundByASecondLook) {
   constexpr int kNumDraws = 200;
-  int num_found = 0;
+  int num_found = 0, num_misread = 0;
   for (int draw = 0; draw < kNumDraws; ++draw) {
     const PlacedMarkerInCam marker = Draw(draw);
     const std::vector<MarkerQuad> found = SearchMarkers(Render(marker), dictionary_, 1, {});
     if (found.empty()) continue;
     ++num_found;
     ASSERT_EQ(found.size(), 1u) << draw;
-    EXPECT_EQ(found[0].marker_id, draw);
     EXPECT_LT(MaxCornerErrorPx(found[0], marker), 3.0) << draw;
+    if (found[0].marker_id == draw) continue;
+    EXPECT_FALSE(found[0].is_second_look) << draw;
+    ++num_misread;
   }
   EXPECT_GE(num_found, 0.85 * kNumDraws);
+  EXPECT_LE(num_misread, 1);  // the first look misreads one of 700
 }
 
 // As a letter may look like a marker, once it is enlarged.
