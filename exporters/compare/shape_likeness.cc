@@ -86,11 +86,12 @@ std::optional<ComparisonDoubt> DoubtOf(const ShapeLikeness& likeness) {
 std::optional<ComparisonDoubt> DoubtOfSurfaceFit(const MarkerShape& shape, double distance_m,
                                                  int num_over_surface, int num_markers) {
   constexpr double kMinShareOver = 0.25;
-  std::vector<Eigen::Vector3d> centers_m;
+  std::vector<Eigen::Vector3d> corners_m;  // a single marker has a size as well
   for (const ShapeMarker& marker : shape.markers) {
-    if (marker.IsWhole()) centers_m.push_back(*marker.x_in_shape_m[0]);
+    if (!marker.IsWhole()) continue;
+    for (int i = 1; i <= kNumCorners; ++i) corners_m.push_back(*marker.x_in_shape_m[i]);
   }
-  const double misfit = distance_m / SizeOf(centers_m);
+  const double misfit = distance_m / SizeOf(corners_m);
   if (misfit > kMaxMisfit) {
     return ComparisonDoubt{
         true, fmt::format("the reference is not a surface of this object: in the best fit, the "

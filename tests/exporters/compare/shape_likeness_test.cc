@@ -131,6 +131,18 @@ TEST(ShapeLikeness, ASurfaceOfAnotherObjectIsBad) {
   EXPECT_FALSE(DoubtOfSurfaceFit(BoatShape(), 0.01, 20, 36).has_value());
 }
 
+TEST(ShapeLikeness, ASingleMarkerIsComparedWithItsOwnSize) {
+  std::set<int> others;
+  for (const ShapeMarker& marker : BoatShape().markers) others.insert(marker.marker_id);
+  others.erase(11);
+  const MarkerShape one = Without(others, BoatShape());
+  ASSERT_EQ(one.markers.size(), 1u);
+  EXPECT_FALSE(DoubtOfSurfaceFit(one, 0.001, 1, 1).has_value());
+  const auto far = DoubtOfSurfaceFit(one, 1.5, 1, 1);
+  ASSERT_TRUE(far.has_value());
+  EXPECT_THAT(far->reason, Not(HasSubstr("inf")));
+}
+
 TEST(ShapeLikeness, MillimetresAreAThousandTimesAsMany) {
   for (const double ratio : {1000.0, 1050.0, 950.0}) EXPECT_TRUE(IsThousandfold(ratio));
   for (const double ratio : {1.0, 0.001, 100.0, 1100.0}) EXPECT_FALSE(IsThousandfold(ratio));
