@@ -43,6 +43,10 @@ void DescribeCamera(RenderClipOptions* options, po::options_description* descrip
   add("sharpening_radius_px", Value(&response->sharpening_radius_px), "its sigma, px, 0.3 to 5");
   add("glare", Value(&render->glare), "light scattered over all pixels, part of white, 0 to 0.5");
   add("blur_px", Value(&render->blur_px), "sigma of the lens's blur, px, 0 to 20");
+  add("defocus_px", Value(&render->defocus_px),
+      "radius of the disc that a point is seen as out of focus, px, 0 to 20");
+  add("halo", Value(&render->halo), "share of the light that the lens scatters nearby, 0 to 0.9");
+  add("halo_px", Value(&render->halo_px), "sigma of this scatter, px, 1 to 20");
   add("motion_blur_px", Value(&render->motion_blur_px),
       "path of the picture during the exposure, px, 0 to 100");
   add("noise", Value(&render->noise), "standard deviation, of light (white: 255), 0 to 100");

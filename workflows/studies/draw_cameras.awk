@@ -56,6 +56,11 @@ function draw_camera(curve) {
   }
   set("glare", "%.3f", between(0, 0.05))
   set("blur_px", "%.2f", between(0.4, 1.1))
+  if (uniform() < 0.3) set("defocus_px", "%.2f", between(0.5, 1.5))
+  if (uniform() < 0.3) {
+    set("halo", "%.3f", between(0.02, 0.15))
+    set("halo_px", "%.1f", between(1.5, 4))
+  }
   set("motion_blur_px", "%.1f", uniform() < 0.5 ? 0 : between(0.5, 3))
   set("noise", "%.2f", between(0.2, 0.8))
   set("shot_noise", "%.1f", between(1, 5))
@@ -71,7 +76,8 @@ BEGIN {
   split(quick ? "12 12 12 16" : "24 16 20 24", num_frames, " ")
   num_names = split("scene width sail_scale distance motion margin_sides num_frames fps seed " \
     "ink_spread_mm ink_level paper_level background_level tone_curve gamma s_curve sharpening " \
-    "sharpening_radius_px glare blur_px motion_blur_px noise shot_noise codec range crf", names, " ")
+    "sharpening_radius_px glare blur_px defocus_px halo halo_px motion_blur_px noise shot_noise codec " \
+    "range crf", names, " ")
   header = "draw,class,curve"
   for (i = 1; i <= num_names; i++) header = header "," names[i]
   print header

@@ -29,6 +29,30 @@ cv::Mat MotionKernel(double length_px, double angle_rad) {
   return kernel;
 }
 
+// An even disc; pixels at its border count by the share of them that it covers.
+cv::Mat DiscKernel(double radius_px) {
+  constexpr int kSubsamples = 16;
+  const int reach = static_cast<int>(std::ceil(radius_px));
+  const int size = kSubsamples * (2 * reach + 1);
+  cv::Mat disc(size, size, CV_32F, cv::Scalar(0));
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double x = column + 0.5 - 0.5 * size, y = row + 0.5 - 0.5 * size;
+      if (std::hypot(x, y) < kSubsamples * radius_px) disc.at<float>(row, column) = 1;
+    }
+  }
+  cv::Mat kernel;
+  cv::resize(disc, kernel, {2 * reach + 1, 2 * reach + 1}, 0, 0, cv::INTER_AREA);
+  return kernel / cv::sum(kernel)[0];
+}
+
+cv::Mat GaussianBlurred(double sigma_px, const cv::Mat& image) {
+  const int size = 2 * static_cast<int>(std::ceil(4 * sigma_px)) + 1;
+  cv::Mat blurred;
+  cv::GaussianBlur(image, blurred, {size, size}, sigma_px, 0, cv::BORDER_REPLICATE);
+  return blurred;
+}
+
 }  // namespace
 
 void MotionBlur(double length_px, double angle_rad, cv::Mat* fine) {
@@ -38,16 +62,24 @@ void MotionBlur(double length_px, double angle_rad, cv::Mat* fine) {
 }
 
 void LensBlur(double sigma_px, cv::Mat* fine) {
-  if (sigma_px <= 0) return;
-  const double sigma_fine_px = kFinePerSensorPx * sigma_px;
-  const int size = 2 * static_cast<int>(std::ceil(4 * sigma_fine_px)) + 1;
-  cv::GaussianBlur(*fine, *fine, {size, size}, sigma_fine_px, 0, cv::BORDER_REPLICATE);
+  if (sigma_px > 0) *fine = GaussianBlurred(kFinePerSensorPx * sigma_px, *fine);
+}
+
+void DefocusBlur(double radius_px, cv::Mat* fine) {
+  if (radius_px <= 0) return;
+  cv::filter2D(*fine, *fine, -1, DiscKernel(kFinePerSensorPx * radius_px), {-1, -1}, 0,
+               cv::BORDER_REPLICATE);
 }
 
 cv::Mat OnSensor(const cv::Mat& fine) {
   cv::Mat image;
   cv::resize(fine, image, fine.size() / kFinePerSensorPx, 0, 0, cv::INTER_AREA);
   return image;
+}
+
+void Halo(double share, double sigma_px, cv::Mat* image) {
+  if (share <= 0) return;
+  cv::addWeighted(*image, 1 - share, GaussianBlurred(sigma_px, *image), share, 0, *image);
 }
 
 void AddNoise(double sigma, double shot_sigma, std::uint64_t seed, cv::Mat* image) {

@@ -23,8 +23,16 @@ void MotionBlur(double length_px, double angle_rad, cv::Mat* fine);
 // Gaussian blur of a fine picture; its sigma is in px of the sensor.
 void LensBlur(double sigma_px, cv::Mat* fine);
 
+// Blurs a fine picture by a lens out of focus, through which a point is an even disc; its radius is
+// in px of the sensor.
+void DefocusBlur(double radius_px, cv::Mat* fine);
+
 // The means of a fine picture over the sensor's pixels.
 cv::Mat OnSensor(const cv::Mat& fine);
+
+// Scatters a share of the light over a Gaussian of a few pixels of the sensor, as aberrations and
+// plastic covers do.
+void Halo(double share, double sigma_px, cv::Mat* image);
 
 // Adds the same Gaussian noise to all three channels of a picture, because a video keeps only the
 // luma of the sensor's noise. Its variance is sigma^2 (read noise) plus shot_sigma^2 * light / 255

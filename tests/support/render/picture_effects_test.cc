@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include "importer/geometry/units.h"
 
@@ -36,6 +37,61 @@ TEST(LensBlur, ActsBeforeTheSensorSamplesTheLight) {
             << sigma_px << " px, edge at " << edge_px << ", pixel " << x;
       }
     }
+  }
+}
+
+struct Moments {
+  double sum = 0.0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), variance = Eigen::Vector2d::Zero();  // px
+};
+
+Moments MomentsOf(const cv::Mat& image) {
+  Moments moments;
+  const auto add = [&image](const auto& by_pixel) {
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        by_pixel(image.at<float>(y, x), Eigen::Vector2d(x + 0.5, y + 0.5));
+      }
+    }
+  };
+  add([&](double light, const Eigen::Vector2d& x) {
+    moments.sum += light;
+    moments.mean += light * x;
+  });
+  moments.mean /= moments.sum;
+  add([&](double light, const Eigen::Vector2d& x) {
+    moments.variance += light / moments.sum * (x - moments.mean).cwiseAbs2();
+  });
+  return moments;
+}
+
+// Of a pixel that alone is lit.
+TEST(PictureEffects, SpreadLightByTheirSizeAndLoseNone) {
+  constexpr double kArea = 255.0 * kFinePerSensorPx * kFinePerSensorPx;
+  constexpr double kPixelVariance = 1.0 / 12;  // of an even square of one pixel
+  cv::Mat lit(40 * kFinePerSensorPx, 40 * kFinePerSensorPx, CV_32F, cv::Scalar(0));
+  lit(cv::Rect(20 * kFinePerSensorPx, 20 * kFinePerSensorPx, kFinePerSensorPx, kFinePerSensorPx))
+      .setTo(255);
+  const auto expect = [&](const cv::Mat& image, double variance_px2, double px_by_sensor_px) {
+    const Moments moments = MomentsOf(image);
+    const double area =
+        kArea * px_by_sensor_px * px_by_sensor_px / (kFinePerSensorPx * kFinePerSensorPx);
+    EXPECT_NEAR(moments.sum, area, 1e-4 * area);
+    EXPECT_LT((moments.mean / px_by_sensor_px - Eigen::Vector2d(20.5, 20.5)).norm(), 1e-4);
+    const Eigen::Vector2d variances = moments.variance / (px_by_sensor_px * px_by_sensor_px);
+    for (const double variance : variances) {
+      EXPECT_NEAR(variance, variance_px2, 0.02 * variance_px2 + 0.02);
+    }
+  };
+  for (const double radius_px : {0.5, 1.0, 1.7}) {
+    cv::Mat fine = lit.clone();
+    DefocusBlur(radius_px, &fine);
+    expect(fine, 0.25 * radius_px * radius_px + kPixelVariance, kFinePerSensorPx);
+  }
+  for (const double share : {0.05, 0.2}) {
+    cv::Mat image = OnSensor(lit);
+    Halo(share, 3.0, &image);
+    expect(image, share * 9.0, 1.0);
   }
 }
 

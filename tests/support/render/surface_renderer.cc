@@ -151,7 +151,10 @@ cv::Mat Exposed(const SurfaceRenderOptions& options, int frame_idx, cv::Mat fine
   constexpr double kGoldenAngle_rad = 2.399963;
   MotionBlur(options.motion_blur_px, kGoldenAngle_rad * frame_idx, &fine);
   LensBlur(options.blur_px, &fine);
-  return OnSensor(fine);
+  DefocusBlur(options.defocus_px, &fine);
+  cv::Mat image = OnSensor(fine);
+  Halo(options.halo, options.halo_px, &image);
+  return image;
 }
 
 // BGR of the far world in a direction: sea, haze at the horizon, sky.
@@ -279,6 +282,9 @@ void AddReflections(const ClipScene& scene, const FrameView& view, int num_refle
 
 void SurfaceRenderOptions::Check() const {
   CheckOptionRange("blur_px", blur_px, 0, 20);
+  CheckOptionRange("defocus_px", defocus_px, 0, 20);
+  CheckOptionRange("halo", halo, 0, 0.9);
+  CheckOptionRange("halo_px", halo_px, 1, 20);
   CheckOptionRange("motion_blur_px", motion_blur_px, 0, 100);
   CheckOptionRange("noise", noise, 0, 100);
   CheckOptionRange("shot_noise", shot_noise, 0, 100);

@@ -17,6 +17,9 @@ namespace velamap {
 
 struct SurfaceRenderOptions {
   double blur_px = 0.7;         // sigma of the lens blur, in addition to the area of a pixel
+  double defocus_px = 0.0;      // radius of the disc that a point is seen as, out of focus
+  double halo = 0.0;            // share of the light that is scattered over a Gaussian of
+  double halo_px = 3.0;         // this sigma
   double motion_blur_px = 0.0;  // motion during the exposure; its direction differs between frames
   double noise = 2.0;           // standard deviation of the read noise, in light (0 to 255)
   double shot_noise = 0.0;      // standard deviation of the shot noise at full light
