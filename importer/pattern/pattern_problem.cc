@@ -215,11 +215,9 @@ std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSqua
 // known by then. If these were wrong, as under a wide blur or where a background brighter than the
 // paper was taken for the quiet zone, the fit moves the contrast of the surroundings away from what
 // was read, and its prior moves the edges.
-bool NeedsAnotherPass(const PatternProblem& problem, const PatternMinimum& minimum) {
-  constexpr double kWideBlur = 0.3;           // cells
+bool ReadSurroundingsWrongly(const PatternMinimum& minimum) {
   constexpr double kMaxContrastError = 0.03;  // relative
-  return BlurInCells(minimum.parameters, problem.model.num_cells).maxCoeff() > kWideBlur ||
-         std::abs(minimum.parameters[P::kSurround] - 1) > kMaxContrastError;
+  return std::abs(minimum.parameters[P::kSurround] - 1) > kMaxContrastError;
 }
 
 }  // namespace
@@ -276,13 +274,17 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
 
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kCoarsePx = 0.1;
-  constexpr int kMaxPasses = 3;  // after the first fine one
+  constexpr double kWideBlur = 0.3;  // cells
+  constexpr int kMaxPasses = 4;
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
-  if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
-  for (int i = 0; i < kMaxPasses && NeedsAnotherPass(*problem, *minimum); ++i) {
+  int num_passes = 0;
+  do {
     if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
-  }
+    ++num_passes;
+  } while ((num_passes == 1 &&
+            BlurInCells(minimum->parameters, problem->model.num_cells).maxCoeff() > kWideBlur) ||
+           (num_passes < kMaxPasses && ReadSurroundingsWrongly(*minimum)));
   const double contrast = ContrastOf(*problem, *minimum);
   return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
 }
