@@ -40,7 +40,7 @@ struct BoardRenderOptions {
   double black = 40.0, white = 200.0, background = 120.0;  // grey levels
   double blur_sigma_px = 0.7;
   double noise_sigma = 0.0;  // grey levels
-  int supersampling = 3;     // number of samples along each side of half a pixel
+  int supersampling = 2;     // number of samples along each side of half a pixel
   std::uint32_t seed = 1;    // of the noise
 };
 

@@ -37,7 +37,7 @@ struct RenderOptions {
   ImageFormationParameters camera{};  // tone curve and sharpening; the ink spread is not used
   bool sharpens_light = false;        // before the tone curve instead of after it
   double noise_sigma = 0.0;           // grey levels
-  int supersampling = 6;              // number of samples along each side of half a pixel
+  int supersampling = 4;              // number of samples along each side of half a pixel
   bool color = false;                 // BGR with three equal channels instead of grey
   std::uint32_t seed = 1;             // of texture and noise
 };

@@ -41,7 +41,6 @@ void RenderPictures(Kind kind, std::uint32_t seed, const std::filesystem::path& 
   constexpr int kNumPictures = 10;
   BoardRenderOptions options;
   options.noise_sigma = 2.0;
-  options.supersampling = 2;
   const PrintedBoard board = Print(kind);
   int number = 0;
   for (const Rigid3& pose : DrawBoardPoses(kTruth, board, kNumPictures, seed)) {
