@@ -9,5 +9,5 @@ if(BASH_PROGRAM)
   add_test(NAME workflows.run_batch
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/run_batch_test.sh ${PROJECT_SOURCE_DIR})
   set_tests_properties(dataset.table dataset.slurm workflows.run_batch PROPERTIES
-    LABELS colmap COST 50 SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
+    LABELS colmap COST 50 SKIP_RETURN_CODE 77 TIMEOUT 600 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
 endif()
