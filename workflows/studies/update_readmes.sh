@@ -39,7 +39,7 @@ for study in accuracy board_motions marker_design parameters repeatability rigid
   command_of[$study.csv]="workflows/studies/$study.sh"
 done
 command_of[sample_project.txt]=workflows/studies/sample_project.sh
-command_of[camera_draws_summary.csv]="workflows/studies/camera_draws.sh"
+command_of[camera_draws_summary.csv]="workflows/studies/camera_draws.sh --num_draws 40"
 command_of[surface_curvature.csv]=workflows/studies/surface.sh
 for table in central_frames central_frames_histogram; do
   command_of[$table.csv]=workflows/studies/central_frames.sh
