@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/camera/calibration.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/geometry/units.h"
 #include "tests/support/render/picture_effects.h"
@@ -98,8 +97,7 @@ PrintedBoard PrintMarkerGrid(int num_columns, int num_rows, const Dictionary& di
 cv::Mat RenderBoard(const Camera& camera, const Rigid3& cam_from_board, const PrintedBoard& board,
                     const BoardRenderOptions& options) {
   const Rigid3 board_from_cam = Inverse(cam_from_board);
-  const Camera fine_camera = ScaleToImageSize(camera, kFinePerSensorPx * camera.width_px,
-                                              kFinePerSensorPx * camera.height_px, "");
+  const Camera fine_camera = FineCamera(camera);
   const std::vector<Eigen::Vector3d> rays = RaysOfPixelCorners(fine_camera);
   const int num = options.supersampling;
   cv::Mat fine(fine_camera.height_px, fine_camera.width_px, CV_32F);

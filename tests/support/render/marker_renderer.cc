@@ -9,7 +9,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
-#include "importer/camera/calibration.h"
 #include "importer/geometry/units.h"
 #include "tests/support/render/picture_effects.h"
 
@@ -244,8 +243,7 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
                       const Dictionary& dictionary, int border_bits, const RenderOptions& options) {
   VELAMAP_CHECK(camera.width_px > 0 && camera.height_px > 0 && options.supersampling > 0);
   cv::RNG random(options.seed);
-  const Camera fine_camera = ScaleToImageSize(camera, kFinePerSensorPx * camera.width_px,
-                                              kFinePerSensorPx * camera.height_px, "");
+  const Camera fine_camera = FineCamera(camera);
   cv::Mat fine = MakeBackground({fine_camera.width_px, fine_camera.height_px}, options, &random);
   std::vector<PlacedMarkerInCam> far_first;
   std::copy_if(markers.begin(), markers.end(), std::back_inserter(far_first), IsVisible);

@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "importer/camera/calibration.h"
+
 namespace velamap {
 namespace {
 
@@ -54,6 +56,11 @@ cv::Mat GaussianBlurred(double sigma_px, const cv::Mat& image) {
 }
 
 }  // namespace
+
+Camera FineCamera(const Camera& camera) {
+  return ScaleToImageSize(camera, kFinePerSensorPx * camera.width_px,
+                          kFinePerSensorPx * camera.height_px, "");
+}
 
 void MotionBlur(double length_px, double angle_rad, cv::Mat* fine) {
   if (length_px <= 0) return;

@@ -7,6 +7,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/camera/camera.h"
+
 namespace velamap {
 
 // Lenses and motion blur the light before the sensor takes its means over pixels. A picture is
@@ -14,6 +16,9 @@ namespace velamap {
 // kernels of less than a pixel that act on the sensor's pixels spread light in steps of a pixel,
 // as no lens does, and the estimate of camera and print takes that for sharpening and a tone curve.
 constexpr int kFinePerSensorPx = 2;
+
+// The camera that takes the fine picture.
+Camera FineCamera(const Camera& camera);
 
 // Blurs a fine picture as if it moved by `length_px` (of the sensor) at constant speed during the
 // exposure, whose middle is the time of the truth. The angle of the motion is from the image's x
