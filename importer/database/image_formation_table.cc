@@ -27,6 +27,8 @@ CREATE TABLE image_formation (
     is_inverted INTEGER NOT NULL,
     quiet_zone_cells REAL NOT NULL,
     quiet_zone_sigma_cells REAL NOT NULL,
+    halo REAL NOT NULL,
+    halo_radius_px REAL NOT NULL,
     num_samples INTEGER NOT NULL,
     noise_gray REAL NOT NULL,
     inset_sigma_px REAL NOT NULL);
@@ -39,13 +41,14 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   database->exec("DROP TABLE IF EXISTS image_formation");
   database->exec(kFormationSchema);
   SQLite::Statement insert(
-      *database, "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      *database,
+      "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
                found.ink_spread_sides, found.edge_shift_blurs, found.outline_shift_blurs,
                found.outline_corner_weight, found.is_inverted ? 1 : 0, found.quiet_zone_cells,
-               found.quiet_zone_sigma_cells, estimate.num_samples, estimate.noise_gray,
-               estimate.inset_sigma_px);
+               found.quiet_zone_sigma_cells, found.halo, found.halo_radius_px, estimate.num_samples,
+               estimate.noise_gray, estimate.inset_sigma_px);
   insert.exec();
 }
 
@@ -57,7 +60,9 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   std::string missing;
   for (const auto& [column, value] : {std::pair("outline_corner_weight", 1),
                                       {"edge_shift_blurs", 0},
-                                      {"outline_shift_blurs", 0}}) {
+                                      {"outline_shift_blurs", 0},
+                                      {"halo", 0},
+                                      {"halo_radius_px", 1}}) {
     if (columns.count(column) == 0) missing += fmt::format(", {} AS {}", value, column);
   }
   SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation", missing));
@@ -79,6 +84,8 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.is_inverted = number("is_inverted", FromTo(0, 1)) != 0;
   found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));
   found.quiet_zone_sigma_cells = number("quiet_zone_sigma_cells", FromTo(0, 100));
+  found.halo = number("halo", FromTo(-0.5, 0.5));
+  found.halo_radius_px = number("halo_radius_px", FromTo(0.1, 10));
   estimate.num_samples = static_cast<int>(number("num_samples", FromTo(0, 1e6)));
   estimate.noise_gray = number("noise_gray", FromTo(0, 255));
   estimate.inset_sigma_px = number("inset_sigma_px", FromTo(0, 100));

@@ -23,6 +23,12 @@ double ShareOfOutlines(double leverage) {
   return kLargestShare / (1 + std::pow(leverage / kTurningLeverage, 4));
 }
 
+FormationState WithEdgeShift(double shift_blurs, const FormationState& state, int num_threads) {
+  FormationVector parameters = state.parameters;
+  parameters[kEdgeShift] = std::clamp(shift_blurs, -kMaxEdgeShift, kMaxEdgeShift);
+  return MovedTo(parameters, state, num_threads);
+}
+
 FormationState WithOutlineShift(double shift_blurs, const FormationState& state, int num_threads) {
   ImageFormationParameters formation = state.formation->parameters();
   formation.outline_shift_blurs = shift_blurs;
@@ -33,32 +39,30 @@ FormationState WithOutlineShift(double shift_blurs, const FormationState& state,
 
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   constexpr int kIterations = 3;
-  BalancedEdges balanced{state, 0.0};
+  constexpr double kProbeBlurs = 0.05;
+  const double shift = state.parameters[kEdgeShift];
+  FormationState balanced = state;
   EdgeShift edges;
   for (int i = 0; i < kIterations; ++i) {
-    edges = InnerEdgeShift(balanced.state);
-    FormationVector parameters = balanced.state.parameters;
-    parameters[kEdgeShift] =
-        std::clamp(parameters[kEdgeShift] + edges.mean_blurs, -kMaxEdgeShift, kMaxEdgeShift);
-    balanced.state = MovedTo(parameters, balanced.state, num_threads);
+    edges = InnerEdgeShift(balanced);
+    balanced =
+        WithEdgeShift(balanced.parameters[kEdgeShift] + edges.mean_blurs, balanced, num_threads);
   }
-  const double change = balanced.state.parameters[kEdgeShift] - state.parameters[kEdgeShift];
-  const double inset_px = MeanInset(state, balanced.state);
-  if (std::abs(change) < 1e-7) return {state, 0.0};
+  const double change = balanced.parameters[kEdgeShift] - shift;
+  if (change == 0) return {state, 0.0};
+  // The change itself may be too small to tell how far it moves corners.
+  const double outwards_px =
+      MeanInset(state, WithEdgeShift(shift + kProbeBlurs, state, num_threads)) / kProbeBlurs;
   const double share = ShareBeyondNoise(change, edges.sigma_blurs);
-  FormationVector parameters = state.parameters;
-  parameters[kEdgeShift] += share * change;
   LogDebug(
       "inner edges: shift {:+.4f} -> {:+.4f} +- {:.4f} blur sigmas, corners {:.3f} px outwards; "
       "half difference of the directions {:.4f}",
-      state.parameters[kEdgeShift], balanced.state.parameters[kEdgeShift], edges.sigma_blurs,
-      inset_px, edges.half_difference_blurs);
+      shift, shift + change, edges.sigma_blurs, outwards_px * change, edges.half_difference_blurs);
   const double unexplained =
       std::sqrt(std::max(0.0, edges.half_difference_blurs * edges.half_difference_blurs -
                                   edges.sigma_blurs * edges.sigma_blurs));
-  const double inset_by_shift_px = inset_px / change;
-  return {MovedTo(parameters, state, num_threads),
-          std::abs(inset_by_shift_px) * std::hypot(share * edges.sigma_blurs, unexplained)};
+  return {WithEdgeShift(shift + share * change, state, num_threads),
+          std::abs(outwards_px) * std::hypot(share * edges.sigma_blurs, unexplained)};
 }
 
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads) {

@@ -112,7 +112,7 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
   constexpr double kTolerancePx = 0.003;
   constexpr double kDiverged = 3.0;  // times the residuals before
   PatternProblem& problem = sample->problem;
-  problem.patch = CutPatch(sample->gray, sample->patch_box, formation);
+  SetPatch(CutPatch(sample->gray, sample->patch_box, formation), &problem);
   SetFormation(formation, &problem);
   SetQuietZonePrior(formation.parameters(), &problem);
   for (const int index : {P::kDark, P::kLight}) {

@@ -21,7 +21,7 @@ constexpr double kPixelsAlike = 10.0;
 
 // The steps for derivatives by differences.
 const FormationVector kStep =
-    (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
+    (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02, 0.01, 0.1).finished();
 
 const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
   if (!state.moved) {
@@ -86,11 +86,13 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   const double ink_sigma = kInkSigma_mm / side_mm;
   const double max_ink = std::min(kMaxInkSpread_mm / side_mm, kMaxInkSpreadSides);
   FormationPriors priors;
-  priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0;
-  priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2;
-  // S is below zero where a camera lifts shadows and holds back lights, as phones do.
-  priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift;
-  priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift;
+  priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.7);
+  priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2, 0.05, 0.4;
+  // A halo of less than 2 px is part of the blur. S is below zero where a camera lifts shadows and
+  // holds back lights, as phones do.
+  priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift, -0.1,
+      std::log(2.0);
+  priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift, 0.3, std::log(5.0);
   return priors;
 }
 

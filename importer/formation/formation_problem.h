@@ -30,8 +30,8 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
   // `noises`: grey levels; infinite for samples that do not count. The priors must outlive this.
   FormationProblem(const FormationPriors& priors, std::vector<double> noises, int num_threads);
 
-  // Derivatives take six fits of every sample. They are not computed where the cost is higher than
-  // before, because such a step is rejected.
+  // Derivatives take eight fits of every sample. They are not computed where the cost is higher
+  // than before, because such a step is rejected.
   void Evaluate(const FormationState& state, bool, Equations* equations) const;
 
   FormationState Plus(const FormationState& state, const Step& step) const;

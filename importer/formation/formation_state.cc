@@ -44,6 +44,8 @@ ImageFormationParameters With(const FormationVector& p, ImageFormationParameters
   formation.sharpening_radius_px = std::exp(p[kLogRadius]);
   formation.ink_spread_sides = p[kInkSpread];
   formation.edge_shift_blurs = p[kEdgeShift];
+  formation.halo = p[kHalo];
+  formation.halo_radius_px = std::exp(p[kLogHaloRadius]);
   return formation;
 }
 

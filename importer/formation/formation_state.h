@@ -20,6 +20,8 @@ enum FormationIndex {
   kLogRadius,
   kInkSpread,
   kEdgeShift,
+  kHalo,
+  kLogHaloRadius,
   kNumFormationParameters
 };
 constexpr double kMaxEdgeShift = 1.0;  // blur sigmas, either way

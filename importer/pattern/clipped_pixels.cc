@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "importer/pattern/pattern_picture.h"
 
@@ -40,7 +41,7 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
 // clipped and that the model has beyond their limit. False for none.
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
                           const PatternParameters::Vector& parameters, PatternProblem* problem) {
-  GrayPatch& patch = problem->patch;
+  const GrayPatch& patch = problem->patch;
   cv::Mat expected = ModelPatch(*problem, parameters);
   Sharpen(formation.parameters(), cv::BORDER_REPLICATE, &expected);
   const cv::Rect patch_box(patch.origin_px, patch.values.size());
@@ -66,9 +67,10 @@ bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
       any = true;
     }
   }
-  patch = CutPatch(recorded, patch_box - wide.tl(), formation);
-  patch.origin_px += wide.tl();
-  patch.is_left_out = is_clipped;
+  GrayPatch restored = CutPatch(recorded, patch_box - wide.tl(), formation);
+  restored.origin_px += wide.tl();
+  restored.is_left_out = is_clipped;
+  SetPatch(std::move(restored), problem);
   return any;
 }
 

@@ -1,6 +1,7 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
+//   lens       scatters the share `halo` of the light by a Gaussian of halo_radius_px
 //   camera     edges move by edge_shift_blurs (sigmas of the blur) towards the light side, and the
 //              outline of the black square by a further outline_shift_blurs outwards
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
@@ -10,7 +11,8 @@
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
 // per cent; the sine is the S-shaped contrast that many cameras add. A camera that sharpens light
 // instead of grey values needs no model of its own: another curve and amount put its edges where
-// they are (test SharpenedLightDoesNotMoveSides). Light and grey values run from 0 to 255.
+// they are (test SharpenedLightDoesNotMoveSides). What a lens scatters over tens of pixels changes
+// levels, not edges. Light and grey values run from 0 to 255.
 
 #pragma once
 
@@ -40,6 +42,9 @@ struct ImageFormationParameters {
   // Weight of the pixels at the corners of the cells' outlines. Printers, noise filters and
   // compression round these corners, which the blur of straight edges does not describe.
   double outline_corner_weight = 1.0;
+  // The share is below zero where a camera raises local contrast.
+  double halo = 0.0;
+  double halo_radius_px = 2.7;
 };
 
 // No estimate has more ink than this, which is half of a cell of the coarsest markers.

@@ -40,6 +40,24 @@ cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
   return middle;
 }
 
+Eigen::Vector2d InPatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
+  return x_px - Eigen::Vector2d(patch.origin_px.x, patch.origin_px.y);
+}
+
+int HaloReachPx(const ImageFormationParameters& parameters) {
+  return parameters.halo == 0 ? 0 : static_cast<int>(std::ceil(3 * parameters.halo_radius_px));
+}
+
+// What the halo adds to each pixel. `light` includes it: without it, it is to first order
+// light + halo (light - G light), of which the halo spreads its share by G.
+cv::Mat ScatteredLight(const ImageFormationParameters& parameters, const cv::Mat& light) {
+  const double halo = parameters.halo, radius_px = parameters.halo_radius_px;
+  cv::Mat once, twice;
+  cv::GaussianBlur(light, once, {0, 0}, radius_px, radius_px, cv::BORDER_REPLICATE);
+  cv::GaussianBlur(once, twice, {0, 0}, radius_px, radius_px, cv::BORDER_REPLICATE);
+  return halo * ((1 + halo) * once - halo * twice);
+}
+
 }  // namespace
 
 ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
@@ -107,19 +125,35 @@ ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation) {
   const cv::Rect image(0, 0, gray.cols, gray.rows);
   const cv::Rect inside = box & image;
+  const ImageFormationParameters& parameters = formation.parameters();
+  const bool is_sharpened = !formation.unsharpening().empty();
   GrayPatch patch;
   patch.origin_px = inside.tl();
-  if (formation.unsharpening().empty()) {
-    gray(inside).convertTo(patch.values, CV_32F);
-    return patch;
-  }
-  const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
+  const int reach_px = (is_sharpened ? kUnsharpeningReachPx : 0) + HaloReachPx(parameters);
+  const cv::Point reach(reach_px, reach_px);
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
-  cv::Mat filtered;
-  cv::filter2D(gray(wide), filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
-               cv::BORDER_REPLICATE);
-  patch.values = filtered(inside - wide.tl()).clone();
+  cv::Mat values;
+  if (is_sharpened) {
+    cv::filter2D(gray(wide), values, CV_32F, formation.unsharpening(), {-1, -1}, 0,
+                 cv::BORDER_REPLICATE);
+  } else {
+    gray(wide).convertTo(values, CV_32F);
+  }
+  const cv::Rect inside_wide = inside - wide.tl();
+  patch.values = reach_px > 0 ? values(inside_wide).clone() : values;
+  if (parameters.halo != 0) {
+    formation.tone().Decode(&values);
+    patch.scattered_light = ScatteredLight(parameters, values)(inside_wide).clone();
+  }
   return patch;
+}
+
+double LightAt(const GrayPatch& patch, const ImageFormation& formation,
+               const Eigen::Vector2d& x_px) {
+  const double light = formation.tone().Decode(InterpolatePatch(patch, x_px));
+  if (patch.scattered_light.empty()) return light;
+  const double scattered = InterpolateGray<float>(patch.scattered_light, InPatch(patch, x_px));
+  return (light - scattered) / (1 - formation.parameters().halo);
 }
 
 void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* values) {
@@ -131,8 +165,7 @@ void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* va
 }
 
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
-  return InterpolateGray<float>(patch.values,
-                                x_px - Eigen::Vector2d(patch.origin_px.x, patch.origin_px.y));
+  return InterpolateGray<float>(patch.values, InPatch(patch, x_px));
 }
 
 }  // namespace velamap

@@ -82,6 +82,8 @@ constexpr int kUnsharpeningReachPx = 5;
 struct GrayPatch {
   cv::Mat values;       // CV_32F
   cv::Point origin_px;  // of its first pixel in the image
+  // CV_32F: the light that reaches each pixel by the halo; empty: none.
+  cv::Mat scattered_light;
   // 8 bit: not zero where a pixel does not count, because it is clipped (clipped_pixels.h) or shows
   // something in front of the marker. Empty: all count.
   cv::Mat is_left_out;
@@ -96,5 +98,9 @@ void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* va
 // Bilinear value at a place in OpenCV's pixel frame of the image; places outside the patch take the
 // nearest value inside.
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px);
+
+// Light at such a place without the halo.
+double LightAt(const GrayPatch& patch, const ImageFormation& formation,
+               const Eigen::Vector2d& x_px);
 
 }  // namespace velamap

@@ -85,8 +85,7 @@ void FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vector
         model->inner[static_cast<std::size_t>(j + kRing)] |= is_light << (i + kRing);
       } else if (outside == kRing) {
         const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
-        const double value =
-            model->tone->Decode(InterpolatePatch(patch, map.ToImage(uv.x(), uv.y())));
+        const double value = LightAt(patch, *model->formation, map.ToImage(uv.x(), uv.y()));
         const Within u = across_u.Weights(i, n), v = across_v.Weights(j, n);
         const double surround_share = 1 - u.quiet_zone * v.quiet_zone;
         const double read = (value - dark) / contrast - 1 + u.square * v.square;

@@ -49,7 +49,9 @@ struct PatternModel {
   double edge_shift_blurs = 0.0;       // how far the camera moves them further, in blur sigmas
   double outline_shift_blurs = 0.0;    // how far the outline of the square lies further outside
   double outline_corner_weight = 1.0;  // of the pixels at the corners of the cells' outlines
-  const ToneCurve* tone = nullptr;
+  const ImageFormation* formation = nullptr;
+  cv::Mat scattered_light;  // of the patch
+  Eigen::Vector2d center_in_patch_px;
 };
 
 // Fills in the lightness of the cells: those of the marker are known (zero for black), the

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -36,7 +37,10 @@ inline Floats SquaredSlope(const FloatsArray<PatternParameters::kCount>& jacobia
 class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
-      : model_(model), parameters_(parameters) {
+      : model_(model),
+        tone_(model.formation->tone()),
+        direct_share_(static_cast<float>(1 - model.formation->parameters().halo)),
+        parameters_(parameters) {
     QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
@@ -134,7 +138,8 @@ class PatternPicture {
     const Floats by_x = contrast * (u_by_x * pattern.by_u + v_by_x * pattern.by_v);
     const Floats by_y = contrast * (u_by_y * pattern.by_u + v_by_y * pattern.by_v);
     Floats slope;
-    pixels->gray = model_.tone->Encode(light * level, &slope);
+    pixels->gray = tone_.Encode(direct_share_ * light * level + Scattered(x, y), &slope);
+    slope *= direct_share_;
     FloatsArray<P::kCount>& jacobian = pixels->jacobian;
     const auto set_place = [&](std::size_t index, Floats share) {
       jacobian[index] = -share * by_x;
@@ -158,7 +163,7 @@ class PatternPicture {
     for (std::size_t i = 0; i < 4; ++i) {
       jacobian[P::kMargin + i] = contrast * p[P::kSurround] * surroundings.by_margin[i];
     }
-    if (!model_.tone->IsLinear()) {
+    if (!tone_.IsLinear() || direct_share_ != 1) {
       for (Floats& derivative : jacobian) derivative *= slope;
     }
   }
@@ -191,6 +196,21 @@ class PatternPicture {
         spread_v * spread_v * squared_v * by_vv;
     pattern->value += 0.5f * bend / squared_slope -
                       (spread_u * squared_u + spread_v * squared_v) / Sqrt(squared_slope);
+  }
+
+  // The light that the halo adds to the pixels nearest to the places.
+  Floats Scattered(Floats x, Floats y) const {
+    const cv::Mat& scattered = model_.scattered_light;
+    Floats light{};
+    if (scattered.empty()) return light;
+    const Floats column = x + static_cast<float>(model_.center_in_patch_px.x() + 0.5);
+    const Floats row = y + static_cast<float>(model_.center_in_patch_px.y() + 0.5);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      light[lane] =
+          scattered.at<float>(std::clamp(static_cast<int>(row[lane]), 0, scattered.rows - 1),
+                              std::clamp(static_cast<int>(column[lane]), 0, scattered.cols - 1));
+    }
+    return light;
   }
 
   // Whether the cell at a place (in cells), or the quiet zone there, is light.
@@ -256,6 +276,8 @@ class PatternPicture {
   }
 
   const PatternModel& model_;
+  const ToneCurve& tone_;
+  float direct_share_;  // of the light, which the halo does not scatter
   PatternParameters::Vector parameters_;
   Eigen::Matrix3f square_from_image_;
 };

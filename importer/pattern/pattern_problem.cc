@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"
@@ -42,7 +43,7 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPix
 }
 
 double LightAt(const PatternProblem& problem, const UnitSquareMap& map, double u, double v) {
-  return problem.model.tone->Decode(InterpolatePatch(problem.patch, map.ToImage(u, v)));
+  return LightAt(problem.patch, *problem.model.formation, map.ToImage(u, v));
 }
 
 // Widths of the quiet zone in cells, ordered as in PatternParameters: the place on the way outwards
@@ -98,7 +99,7 @@ CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& ma
   }
   beside /= 4 * n;
   const double light = means.light.value_or(beside);
-  const ToneCurve& tone = *problem.model.tone;
+  const ToneCurve& tone = problem.model.formation->tone();
   return {means.dark, tone.Encode(beside) > tone.Encode(light) ? beside : light};
 }
 
@@ -107,7 +108,7 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
            PatternProblem* problem, PatternMinimum* minimum) {
   const UnitSquareMap map(corners_px);
   const CellLights lights = ReadCellLights(*problem, map);
-  const ToneCurve& tone = *problem->model.tone;
+  const ToneCurve& tone = problem->model.formation->tone();
   if (!(tone.Encode(lights.light) - tone.Encode(lights.dark) > kMinContrast / 2)) return false;
   P::Vector& p = minimum->parameters;
   p.setZero();
@@ -236,9 +237,9 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   problem.box = *box;
   // The surroundings are read up to two cells away.
   const cv::Point beyond(box->width / 4 + 3, box->height / 4 + 3);
-  problem.patch = CutPatch(gray, cv::Rect(box->tl() - beyond, box->br() + beyond), formation);
-  SetFormation(formation, &problem);
   problem.model.center_px = map.ToImage(0.5, 0.5);
+  SetPatch(CutPatch(gray, cv::Rect(box->tl() - beyond, box->br() + beyond), formation), &problem);
+  SetFormation(formation, &problem);
   problem.model.diagonal_px =
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
   if (!Start(corners_px, formation.parameters(), &problem, minimum)) return std::nullopt;
@@ -246,14 +247,22 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
 }
 
 double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum) {
-  const ToneCurve& tone = *problem.model.tone;
+  const ToneCurve& tone = problem.model.formation->tone();
   return tone.Encode(minimum.parameters[P::kLight]) - tone.Encode(minimum.parameters[P::kDark]);
+}
+
+void SetPatch(GrayPatch patch, PatternProblem* problem) {
+  problem->patch = std::move(patch);
+  problem->model.scattered_light = problem->patch.scattered_light;
+  const cv::Point& origin_px = problem->patch.origin_px;
+  problem->model.center_in_patch_px =
+      problem->model.center_px - Eigen::Vector2d(origin_px.x, origin_px.y);
 }
 
 void SetFormation(const ImageFormation& formation, PatternProblem* problem) {
   const ImageFormationParameters& parameters = formation.parameters();
   PatternModel& model = problem->model;
-  model.tone = &formation.tone();
+  model.formation = &formation;
   model.ink_spread_cells = parameters.ink_spread_sides * model.num_cells;
   model.edge_shift_blurs = parameters.edge_shift_blurs;
   model.outline_shift_blurs = parameters.outline_shift_blurs;

@@ -49,6 +49,9 @@ double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum);
 // Sets the constants of the model that depend on the image formation.
 void SetFormation(const ImageFormation& formation, PatternProblem* problem);
 
+// Sets the pixels, and the scattered light in them that the model adds to its own.
+void SetPatch(GrayPatch patch, PatternProblem* problem);
+
 // The prior of the widths of the quiet zone, where that is known of all markers.
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem);
 

@@ -251,7 +251,9 @@ std::vector<BadInput> ImageFormations() {
       {"ink_spread_sides", "0.5"},
       {"edge_shift_blurs", "9"},
       {"outline_shift_blurs", "9"},
-      {"outline_corner_weight", "2"}};
+      {"outline_corner_weight", "2"},
+      {"halo", "1"},
+      {"halo_radius_px", "0"}};
   std::vector<BadInput> cases;
   for (const auto& [column, value] : bad_values) {
     cases.push_back({fmt::format("ImageFormation{}", cases.size()), kRerun, 2,

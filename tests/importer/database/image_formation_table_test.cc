@@ -16,7 +16,7 @@ TEST(ImageFormationTable, HoldsOneRow) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   FormationEstimate estimate;
-  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, 0.1, true, 0.7, 0.15, 0.3};
+  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, 0.1, true, 0.7, 0.15, 0.3, 0.08, 3.5};
   estimate.num_samples = 31;
   estimate.noise_gray = 2.5;
   estimate.inset_sigma_px = 0.012;
@@ -36,6 +36,8 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->parameters.edge_shift_blurs, -0.2);
   EXPECT_EQ(read->parameters.outline_shift_blurs, 0.1);
   EXPECT_EQ(read->parameters.outline_corner_weight, 0.3);
+  EXPECT_EQ(read->parameters.halo, 0.08);
+  EXPECT_EQ(read->parameters.halo_radius_px, 3.5);
   EXPECT_TRUE(read->parameters.is_inverted);
   EXPECT_EQ(read->parameters.quiet_zone_cells, 0.7);
   EXPECT_EQ(read->parameters.quiet_zone_sigma_cells, 0.15);
@@ -60,7 +62,8 @@ TEST(ImageFormationTable, HoldsTheMostInkThatAnEstimateOfTinyMarkersGives) {
   EXPECT_EQ(read->parameters.ink_spread_sides, ink_spread);
 }
 
-// The corners of outlines had no weight of their own, and edges no shift but that of the ink.
+// The corners of outlines had no weight of their own, and edges no shift but that of the ink,
+// lenses no halo.
 TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
   const TempDir dir;
   const std::string path = dir / "database.db";
@@ -70,12 +73,15 @@ TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
     database.exec("ALTER TABLE image_formation DROP COLUMN outline_corner_weight");
     database.exec("ALTER TABLE image_formation DROP COLUMN edge_shift_blurs");
     database.exec("ALTER TABLE image_formation DROP COLUMN outline_shift_blurs");
+    database.exec("ALTER TABLE image_formation DROP COLUMN halo");
+    database.exec("ALTER TABLE image_formation DROP COLUMN halo_radius_px");
   }
   const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
   ASSERT_TRUE(read);
   EXPECT_EQ(read->parameters.outline_corner_weight, 1.0);
   EXPECT_EQ(read->parameters.edge_shift_blurs, 0.0);
   EXPECT_EQ(read->parameters.outline_shift_blurs, 0.0);
+  EXPECT_EQ(read->parameters.halo, 0.0);
   EXPECT_NO_THROW(ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation({}));
 }
 

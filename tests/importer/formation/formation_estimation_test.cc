@@ -128,6 +128,30 @@ TEST(FormationEstimation, LinearCameraIsFoundLinear) {
   EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.03);
 }
 
+// A lens that scatters light lowers the contrast of cells as a negative sharpening does, but before
+// the tone curve. The background is what the light comes from, so it may be bright.
+TEST(FormationEstimation, HaloIsTakenForAHalo) {
+  std::mt19937 random(TestSeed());
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int draw = 0; draw < 3; ++draw) {
+    MarkerGridOptions scene = DrawScene(&random);
+    RenderOptions& rendering = scene.rendering;
+    scene.side_px = 24 + 20 * unit(random);
+    rendering.white = 180;
+    rendering.background = rendering.white * (0.1 + unit(random));
+    if (draw == 0) rendering.camera = {};
+    rendering.camera.halo = 0.05 + 0.07 * unit(random);
+    rendering.camera.halo_radius_px = 2.2 + 1.5 * unit(random);
+    const MarkerGrid grid = MakeMarkerGrid(scene);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    EXPECT_NEAR(estimate.parameters.halo, rendering.camera.halo, 0.03) << draw;
+    EXPECT_NEAR(estimate.parameters.sharpening, rendering.camera.sharpening, 0.15) << draw;
+    const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
+    EXPECT_LT(std::abs(bias_px), 0.01) << draw;
+    EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px) << draw;
+  }
+}
+
 // Nothing describes a camera that sharpens light, before it encodes; the scenes above sharpen grey
 // values.
 TEST(FormationEstimation, SharpenedLightDoesNotMoveSides) {

@@ -60,10 +60,16 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
   parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
   parameters.segment<4>(P::kMargin) << 0.7, 0.9, 1.1, 0.8;
-  const ImageFormation formation({2.2, 0.03, 0.0, 1.0});
-  model.tone = &formation.tone();
-  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), formation), grid.cells[0],
-                parameters, &model);
+  ImageFormationParameters camera;
+  camera.gamma = 2.2;
+  camera.s_amplitude = 0.03;
+  camera.halo = 0.08;
+  const ImageFormation formation(camera);
+  model.formation = &formation;
+  const GrayPatch patch = CutPatch(grid.image, cv::Rect({}, grid.image.size()), formation);
+  model.scattered_light = patch.scattered_light;
+  model.center_in_patch_px = model.center_px;
+  FillLightness(patch, grid.cells[0], parameters, &model);
   const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f, 9.8f, -9.1f, 0.3f, 2.6f};
   const Floats y = {0.4f, -9.8f, 5.1f, 10.9f, -10.7f, 9.7f, -0.2f, 7.4f};
   ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
@@ -110,7 +116,9 @@ TEST(ComputeCellWeights, StayInsideThePatternAndAddUpToOne) {
 }
 
 TEST(PatternPicture, CoversTheMarkerAndMostOfTheQuietZone) {
+  const ImageFormation formation;
   PatternModel model;
+  model.formation = &formation;
   model.num_cells = 6;
   model.center_px = {300, 200};
   model.diagonal_px = 12 * std::sqrt(2.0);

@@ -261,6 +261,7 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
   LensBlur(options.blur_sigma_px, &fine);
   cv::Mat image = OnSensor(fine);
   if (options.light_gradient != 0) ApplyLight(options.light_gradient, &image);
+  Halo(options.camera.halo, options.camera.halo_radius_px, &image);
   ApplyCamera(options.camera, options.sharpens_light, &image);
   if (options.noise_sigma > 0) {
     cv::Mat noise(image.size(), CV_32FC1);

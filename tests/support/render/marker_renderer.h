@@ -34,7 +34,7 @@ struct RenderOptions {
   double surround_cells = 0.0;        // black ring around the white one, as on a chequered board
   double light_gradient = 0.0;        // relative change of the light across the picture's diagonal
   double blur_sigma_px = 0.7;         // of the lens, in addition to the area of a pixel
-  ImageFormationParameters camera{};  // tone curve and sharpening; the ink spread is not used
+  ImageFormationParameters camera{};  // halo, tone curve and sharpening; the rest is not used
   bool sharpens_light = false;        // before the tone curve instead of after it
   double noise_sigma = 0.0;           // grey levels
   int supersampling = 4;              // number of samples along each side of half a pixel

@@ -137,7 +137,7 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   p[P::kSurround] = p[P::kInnerLight] = 1.0;
   p.segment<4>(P::kMargin).setOnes();
   const ImageFormation linear;
-  model.tone = &linear.tone();
+  model.formation = &linear;
   FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), linear), grid.cells[k], p,
                 &model);
   P::Matrix information = P::Matrix::Zero();
