@@ -39,8 +39,8 @@ FormationState WithOutlineShift(double shift_blurs, const FormationState& state,
 
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   constexpr int kIterations = 3;
-  constexpr double kProbeBlurs = 0.05;
   const double shift = state.parameters[kEdgeShift];
+  const double probe_blurs = shift > 0 ? -0.05 : 0.05;  // away from the nearer limit
   FormationState balanced = state;
   EdgeShift edges;
   for (int i = 0; i < kIterations; ++i) {
@@ -52,7 +52,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   if (change == 0) return {state, 0.0};
   // The change itself may be too small to tell how far it moves corners.
   const double outwards_px =
-      MeanInset(state, WithEdgeShift(shift + kProbeBlurs, state, num_threads)) / kProbeBlurs;
+      MeanInset(state, WithEdgeShift(shift + probe_blurs, state, num_threads)) / probe_blurs;
   const double share = ShareBeyondNoise(change, edges.sigma_blurs);
   LogDebug(
       "inner edges: shift {:+.4f} -> {:+.4f} +- {:.4f} blur sigmas, corners {:.3f} px outwards; "

@@ -92,7 +92,8 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   // holds back lights, as phones do.
   priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift, -0.1,
       std::log(2.0);
-  priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift, 0.15, std::log(5.0);
+  priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift, 0.15,
+      std::log(5.0);
   return priors;
 }
 

@@ -198,9 +198,9 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   const ImageFormationParameters& found = estimate.parameters;
   LogInfo(
       "camera and print, from {} markers: halo {:+.3f} over {:.1f} px, gamma {:.2f}, S-curve "
-      "{:+.3f}, sharpening {:.2f} over "
-      "{:.1f} px, ink spread {:+.2f} % of the side, edges moved by {:+.2f} and outlines by "
-      "{:+.2f} blur sigmas, quiet zone {:.2f} cells; residuals {:.1f} grey levels",
+      "{:+.3f}, sharpening {:.2f} over {:.1f} px, ink spread {:+.2f} % of the side, edges moved by "
+      "{:+.2f} and outlines by {:+.2f} blur sigmas, quiet zone {:.2f} cells; residuals {:.1f} grey "
+      "levels",
       estimate.num_samples, found.halo, found.halo_radius_px, found.gamma, found.s_amplitude,
       found.sharpening, found.sharpening_radius_px, 100 * found.ink_spread_sides,
       found.edge_shift_blurs, found.outline_shift_blurs, found.quiet_zone_cells,

@@ -45,7 +45,7 @@ bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
   cv::Mat expected = ModelPatch(*problem, parameters);
   Sharpen(formation.parameters(), cv::BORDER_REPLICATE, &expected);
   const cv::Rect patch_box(patch.origin_px, patch.values.size());
-  const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
+  const cv::Point reach(PatchReachPx(formation), PatchReachPx(formation));
   const cv::Rect wide =
       cv::Rect(patch_box.tl() - reach, patch_box.br() + reach) & cv::Rect({}, gray.size());
   cv::Mat recorded;

@@ -12,6 +12,7 @@ namespace velamap {
 namespace {
 
 constexpr double kWhite = 255.0;
+constexpr int kUnsharpeningReachPx = 5;  // of the kernel that undoes the sharpening
 
 double GrayOfLight(const ImageFormationParameters& parameters, double light) {
   const double v = std::pow(std::max(light, 0.0) / kWhite, 1 / parameters.gamma);
@@ -44,12 +45,8 @@ Eigen::Vector2d InPatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
   return x_px - Eigen::Vector2d(patch.origin_px.x, patch.origin_px.y);
 }
 
-int HaloReachPx(const ImageFormationParameters& parameters) {
-  return parameters.halo == 0 ? 0 : static_cast<int>(std::ceil(3 * parameters.halo_radius_px));
-}
-
-// What the halo adds to each pixel. `light` includes it: without it, it is to first order
-// light + halo (light - G light), of which the halo spreads its share by G.
+// What the halo adds to each pixel. `light` includes that; the light before it is to first order
+// light + halo (light - G light), and the halo spreads its share of this by G.
 cv::Mat ScatteredLight(const ImageFormationParameters& parameters, const cv::Mat& light) {
   const double halo = parameters.halo, radius_px = parameters.halo_radius_px;
   cv::Mat once, twice;
@@ -122,25 +119,30 @@ ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
       tone_(parameters),
       unsharpening_(MakeUnsharpeningKernel(parameters)) {}
 
+int PatchReachPx(const ImageFormation& formation) {
+  const ImageFormationParameters& parameters = formation.parameters();
+  int reach_px = formation.unsharpening().empty() ? 0 : kUnsharpeningReachPx;
+  if (parameters.halo != 0) reach_px += static_cast<int>(std::ceil(3 * parameters.halo_radius_px));
+  return reach_px;
+}
+
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation) {
   const cv::Rect image(0, 0, gray.cols, gray.rows);
   const cv::Rect inside = box & image;
   const ImageFormationParameters& parameters = formation.parameters();
-  const bool is_sharpened = !formation.unsharpening().empty();
   GrayPatch patch;
   patch.origin_px = inside.tl();
-  const int reach_px = (is_sharpened ? kUnsharpeningReachPx : 0) + HaloReachPx(parameters);
-  const cv::Point reach(reach_px, reach_px);
+  const cv::Point reach(PatchReachPx(formation), PatchReachPx(formation));
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
   cv::Mat values;
-  if (is_sharpened) {
+  if (formation.unsharpening().empty()) {
+    gray(wide).convertTo(values, CV_32F);
+  } else {
     cv::filter2D(gray(wide), values, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                  cv::BORDER_REPLICATE);
-  } else {
-    gray(wide).convertTo(values, CV_32F);
   }
   const cv::Rect inside_wide = inside - wide.tl();
-  patch.values = reach_px > 0 ? values(inside_wide).clone() : values;
+  patch.values = values(inside_wide).clone();
   if (parameters.halo != 0) {
     formation.tone().Decode(&values);
     patch.scattered_light = ScatteredLight(parameters, values)(inside_wide).clone();

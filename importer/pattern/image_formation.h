@@ -75,9 +75,6 @@ class ImageFormation {
   cv::Mat unsharpening_;
 };
 
-// How far the kernel that undoes the sharpening reaches.
-constexpr int kUnsharpeningReachPx = 5;
-
 // A part of an image in grey values without the sharpening.
 struct GrayPatch {
   cv::Mat values;       // CV_32F
@@ -88,6 +85,9 @@ struct GrayPatch {
   // something in front of the marker. Empty: all count.
   cv::Mat is_left_out;
 };
+
+// How far beyond a patch the pixels of the image act on it.
+int PatchReachPx(const ImageFormation& formation);
 
 // Cuts the part of the image (8 bit or CV_32F) within `box`, which may reach beyond the image.
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation);

@@ -7,6 +7,8 @@ velamap_test(
     refine/fit_models_test.cc
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
+    formation/formation_scenes.cc
+    formation/processed_pictures_test.cc
     pattern/fit_equations_test.cc
     pattern/image_formation_test.cc
     detect/interpolate_test.cc

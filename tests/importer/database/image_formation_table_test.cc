@@ -62,7 +62,7 @@ TEST(ImageFormationTable, HoldsTheMostInkThatAnEstimateOfTinyMarkersGives) {
   EXPECT_EQ(read->parameters.ink_spread_sides, ink_spread);
 }
 
-// The corners of outlines had no weight of their own, and edges no shift but that of the ink,
+// The corners of outlines had no weight of their own, edges no shift but that of the ink, and
 // lenses no halo.
 TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
   const TempDir dir;
