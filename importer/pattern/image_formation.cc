@@ -79,7 +79,7 @@ ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
                          gray_of_root_.begin());
   }
   for (std::size_t i = 0; i < light_of_gray_.size(); ++i) {
-    light_of_gray_[i] = static_cast<float>(Decode(static_cast<double>(i)));
+    light_of_gray_[i] = static_cast<float>(Decode(static_cast<double>(i) / kStepsPerGray));
   }
 }
 
@@ -106,11 +106,16 @@ double ToneCurve::Decode(double gray) const {
 
 void ToneCurve::Decode(cv::Mat* values) const {
   if (is_linear_) return;
+  constexpr auto kWhiteGray = static_cast<float>(kWhite);
   for (float& value : cv::Mat_<float>(*values)) {
-    // Most values are as the camera recorded them.
-    const int gray = static_cast<int>(std::min(std::max(0.0f, value), 255.0f));
-    value = value == static_cast<float>(gray) ? light_of_gray_[static_cast<std::size_t>(gray)]
-                                              : static_cast<float>(Decode(value));
+    if (!(value >= 0.0f && value < kWhiteGray)) {
+      value = static_cast<float>(Decode(static_cast<double>(value)));
+      continue;
+    }
+    const float place = value * kStepsPerGray;
+    const auto i = static_cast<std::size_t>(place);
+    const float rest = place - static_cast<float>(i);
+    value = light_of_gray_[i] + rest * (light_of_gray_[i + 1] - light_of_gray_[i]);
   }
 }
 
@@ -135,10 +140,10 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   const cv::Point reach(PatchReachPx(formation), PatchReachPx(formation));
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
   cv::Mat values;
-  if (formation.unsharpening().empty()) {
-    gray(wide).convertTo(values, CV_32F);
-  } else {
-    cv::filter2D(gray(wide), values, CV_32F, formation.unsharpening(), {-1, -1}, 0,
+  gray(wide).convertTo(values, CV_32F);
+  if (!formation.unsharpening().empty()) {
+    // OpenCV filters pictures of floats four times as fast as those of bytes.
+    cv::filter2D(values, values, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                  cv::BORDER_REPLICATE);
   }
   const cv::Rect inside_wide = inside - wide.tl();

@@ -49,6 +49,7 @@ class ToneCurve {
 
  private:
   static constexpr int kSteps = 512;
+  static constexpr int kStepsPerGray = 8;
   static constexpr float kMaxRoot = 20.0f;  // the root of the largest light, 400
   static constexpr double kMinLight = 0.05;
 
@@ -56,7 +57,7 @@ class ToneCurve {
   float sign_, offset_;                         // of inverted images -1 and 255, else 1 and 0
   std::array<float, kSteps + 1> gray_of_root_;  // as recorded
   std::array<int, 256> first_above_gray_;       // idx in `gray_of_root_`, where Decode() begins
-  std::array<float, 256> light_of_gray_;
+  std::array<float, 255 * kStepsPerGray + 1> light_of_gray_;
 };
 
 // The parameters, ready for many markers.
