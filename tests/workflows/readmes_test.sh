@@ -53,10 +53,20 @@ run --write
 expect 1 "block cube has no <!-- end -->" "writing a block without an end"
 cp "$copy/saved" "$readme"
 
-mv "$copy/workflows/studies/results/accuracy.csv" "$copy/accuracy.csv"
+results="$copy/workflows/studies/results"
+mkdir "$copy/work"
+sed 1d "$results/sample_project.csv" >"$copy/work/sample_project.csv"
+sed '1d; s/^images: .*/images: 98 of 98 used/' "$results/sample_project.txt" >"$copy/work/sample_project.txt"
+cp "$results/sample_project.txt" "$copy/saved.txt"
+run --collect sample_project.csv "$copy/work"
+grep -q 'images: 98 of 98 used' "$readme" || fail "--collect has parted the results of one run: $output"
+mv "$copy/saved.txt" "$results/sample_project.txt"
+cp "$copy/saved" "$readme"
+
+mv "$results/accuracy.csv" "$copy/accuracy.csv"
 run --check
 expect 1 "accuracy.csv is missing" "a missing result"
-sed 's/^clip,way/clip,method/' "$copy/accuracy.csv" >"$copy/workflows/studies/results/accuracy.csv"
+sed 's/^clip,way/clip,method/' "$copy/accuracy.csv" >"$results/accuracy.csv"
 run --check
 expect 1 "accuracy.csv has no such rows or columns" "a result without a column"
 

@@ -88,6 +88,16 @@ store() {
   echo "== stored: $(stored "$1")"
 }
 
+# store_all RESULT...: stores all results in the work folder of the commands that make these results.
+# Results of one run stay together.
+store_all() {
+  local result commands
+  commands="$(for result in "$@"; do echo "${command_of[$result]}"; done)"
+  for result in "${!command_of[@]}"; do
+    if [[ -f "$work/$result" ]] && grep -qxF -e "${command_of[$result]}" <<<"$commands"; then store "$result"; fi
+  done
+}
+
 # measure RESULT...: runs each command of the results once and stores all results that it makes.
 measure() {
   local result command commands=()
@@ -95,10 +105,9 @@ measure() {
   for command in "${commands[@]}"; do
     read -ra words <<<"$command"
     "$repository/${words[0]}" "${words[@]:1}" "$work" || fail "$command failed"
-    for result in "${!command_of[@]}"; do
-      if [[ "${command_of[$result]}" == "$command" ]]; then store "$result"; fi
-    done
   done
+  for result in "$@"; do [[ -f "$work/$result" ]] || fail "${command_of[$result]} has made no $result"; done
+  store_all "$@"
 }
 
 # fill README: prints a README with its blocks filled, and records the blocks that have changed.
@@ -179,13 +188,13 @@ else
   if [[ ${#names[@]} -eq 0 ]]; then mapfile -t names < <(printf '%s\n' "${!command_of[@]}" | sort); fi
   wanted=()
   for name in "${names[@]}"; do
-    case $mode in
-      rerun) wanted+=("$name") ;;
-      collect) if [[ -f "$work/$name" ]]; then store "$name"; fi ;;
-      measure) if [[ ! -f "$(stored "$name")" ]]; then wanted+=("$name"); fi ;;
-    esac
+    if [[ $mode != measure || ! -f "$(stored "$name")" ]]; then wanted+=("$name"); fi
   done
-  if [[ ${#wanted[@]} -gt 0 ]]; then measure "${wanted[@]}"; fi
+  if [[ $mode == collect ]]; then
+    store_all "${wanted[@]}"
+  elif [[ ${#wanted[@]} -gt 0 ]]; then
+    measure "${wanted[@]}"
+  fi
 fi
 
 while IFS= read -r readme; do
