@@ -43,8 +43,9 @@ function number(name, key, digits) {
 }
 
 // For figures of any size: `digits` are significant ones.
-function rounded(name, key, digits) {
-  return {name, value: row => row[key], text: row => significant(row[key], digits)};
+function rounded(name, key, digits, factor = 1) {
+  const value = row => row[key] && factor * row[key];
+  return {name, value, text: row => significant(value(row), digits)};
 }
 
 function text(name, key) {
@@ -158,9 +159,12 @@ function fillRigs(rigs) {
 function fillSurfaces(surfaces) {
   if (!surfaces) return;
   byId('surfaces').hidden = false;
+  const isSmall = surfaces.every(row => row.area_m2 < 0.1);
+  const [unit, unitPerM] = isSmall ? ['mm', 1000] : ['m', 1];
   fillTable('table_surfaces', [
     {name: 'Part', value: row => row.part || 'all markers', isText: true},
-    rounded('Area, m²', 'area_m2', 4), rounded('Volume, m³', 'volume_m3', 4),
+    rounded(`Area, ${unit}²`, 'area_m2', 4, unitPerM ** 2),
+    rounded(`Volume, ${unit}³`, 'volume_m3', 4, unitPerM ** 3),
     rounded('From the markers (RMS), mm', 'distance_mm', 2), rounded('Sigma, mm', 'sigma_mm', 2),
   ].filter(column => surfaces.some(row => column.value(row) !== undefined)), surfaces);
 }
