@@ -32,6 +32,7 @@ inline cv::Mat Picture(int idx, const std::vector<int>& ids, const std::string& 
   }
   cv::Mat picture = DrawMarkers(LoadDictionary(dictionary).aruco, kSize, markers);
   cv::GaussianBlur(picture, picture, cv::Size(), 0.7);
+  picture.convertTo(picture, -1, 0.8, 20);  // clips neither black nor white
   return picture;
 }
 
