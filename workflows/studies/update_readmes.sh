@@ -73,6 +73,7 @@ settings() {
 
 # store RESULT: stores a result from the work folder with its command. Numbers get six digits.
 store() {
+  [[ -f "$work/$1" ]] || fail "${command_of[$1]} has made no $1"
   mkdir -p "$(dirname "$(stored "$1")")"
   {
     echo "# $(settings)${command_of[$1]}"
@@ -88,26 +89,41 @@ store() {
   echo "== stored: $(stored "$1")"
 }
 
-# store_all RESULT...: stores all results in the work folder of the commands that make these results.
-# Results of one run stay together.
-store_all() {
-  local result commands
-  commands="$(for result in "$@"; do echo "${command_of[$result]}"; done)"
+# commands_of RESULT...: prints the commands that make the results, each once.
+commands_of() {
+  local result
+  for result in "$@"; do echo "${command_of[$result]}"; done | sort -u
+}
+
+# results_of COMMAND: prints all results that a command makes. They are stored together, because
+# they belong to one run.
+results_of() {
+  local result
   for result in "${!command_of[@]}"; do
-    if [[ -f "$work/$result" ]] && grep -qxF -e "${command_of[$result]}" <<<"$commands"; then store "$result"; fi
+    if [[ "${command_of[$result]}" == "$1" ]]; then echo "$result"; fi
   done
 }
 
 # measure RESULT...: runs each command of the results once and stores all results that it makes.
 measure() {
-  local result command commands=()
-  mapfile -t commands < <(for result in "$@"; do echo "${command_of[$result]}"; done | sort -u)
+  local result command commands
+  mapfile -t commands < <(commands_of "$@")
   for command in "${commands[@]}"; do
     read -ra words <<<"$command"
     "$repository/${words[0]}" "${words[@]:1}" "$work" || fail "$command failed"
+    for result in $(results_of "$command"); do store "$result"; done
   done
-  for result in "$@"; do [[ -f "$work/$result" ]] || fail "${command_of[$result]} has made no $result"; done
-  store_all "$@"
+}
+
+# collect RESULT...: stores what the work folder has of all results of the same commands.
+collect() {
+  local result command commands
+  mapfile -t commands < <(commands_of "$@")
+  for command in "${commands[@]}"; do
+    for result in $(results_of "$command"); do
+      if [[ -f "$work/$result" ]]; then store "$result"; fi
+    done
+  done
 }
 
 # fill README: prints a README with its blocks filled, and records the blocks that have changed.
@@ -186,14 +202,14 @@ else
   mkdir -p "$work"
   work="$(realpath "$work")"
   if [[ ${#names[@]} -eq 0 ]]; then mapfile -t names < <(printf '%s\n' "${!command_of[@]}" | sort); fi
-  wanted=()
-  for name in "${names[@]}"; do
-    if [[ $mode != measure || ! -f "$(stored "$name")" ]]; then wanted+=("$name"); fi
-  done
   if [[ $mode == collect ]]; then
-    store_all "${wanted[@]}"
-  elif [[ ${#wanted[@]} -gt 0 ]]; then
-    measure "${wanted[@]}"
+    collect "${names[@]}"
+  else
+    wanted=()
+    for name in "${names[@]}"; do
+      if [[ $mode == rerun || ! -f "$(stored "$name")" ]]; then wanted+=("$name"); fi
+    done
+    if [[ ${#wanted[@]} -gt 0 ]]; then measure "${wanted[@]}"; fi
   fi
 fi
 
