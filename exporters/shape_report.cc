@@ -200,7 +200,7 @@ void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report)
   }
 }
 
-void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
+void AddMetrics(const ReferenceMetrics& comparison, MetricsReport* report) {
   Append({{"num_points", comparison.num_points},
           {"distance_mm", Scaled(kMmPerM, comparison.distance_m)}},
          report);

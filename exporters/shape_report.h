@@ -57,6 +57,6 @@ void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report)
 
 // Adds num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm and table
 // reference_markers.
-void AddMetrics(const ShapeComparison& comparison, MetricsReport* report);
+void AddMetrics(const ReferenceMetrics& comparison, MetricsReport* report);
 
 }  // namespace velamap

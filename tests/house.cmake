@@ -96,7 +96,7 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC
-  comparison comparison_sigma section_comparison shape_comparison shape_likeness surface_comparison)
+  comparison comparison_sigma section_comparison shape_deviation shape_likeness surface_comparison)
 house_folder(exporters/report PUBLIC
   camera_key_numbers html_page report_assets report_data report_sail report_writer verdict)
 house_folder(exporters/comparison_page PUBLIC

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "exporters/calibration/calibration_drawing.h"
@@ -101,7 +100,7 @@ std::string PlaceholderHtml(std::string_view name, const CameraCalibration& cali
     return EscapeForMarkup(fmt::format("{} from {}", source.camera_file, source.pictures));
   }
   if (name == "ORIGIN") {
-    return EscapeForMarkup(fmt::format("{:%Y-%m-%d %H:%M} UTC, {} x {} px, {}", OutputDate(),
+    return EscapeForMarkup(fmt::format("{}, {} x {} px, {}", DateText(OutputDate()),
                                        camera.width_px, camera.height_px, source.board));
   }
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));

@@ -9,7 +9,7 @@
 
 #include "exporters/compare/deflection_field.h"
 #include "exporters/compare/section_comparison.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/compare/surface_comparison.h"
 #include "exporters/formats/metrics_report.h"
 #include "exporters/surface/shape_surfaces.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "exporters/compare/section_comparison.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/compare/surface_comparison.h"
 #include "exporters/formats/metrics_report.h"
 

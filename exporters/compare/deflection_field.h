@@ -15,7 +15,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
 #include "exporters/surface/shape_surfaces.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/sail/section.h"
 #include "importer/geometry/rigid3.h"
 #include "importer/layout/layout.h"

@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/compare/surface_comparison.h"
 
 namespace velamap {

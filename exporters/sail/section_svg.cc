@@ -29,11 +29,15 @@ void WriteText(double x, double y, const std::string& style, const std::string& 
                      EscapeForMarkup(text));
 }
 
-// `value ± sigma`, or only the value if it has no sigma.
+// `value ± sigma`, or only the value if it has no sigma. Both have more digits where the sigma
+// would be rounded to zero.
 std::string WithSigma(const Estimate& estimate, double factor, int digits) {
+  constexpr int kMaxDigits = 4;
   const double value = factor * estimate.value;
   if (!estimate.sigma) return fmt::format("{:.{}f}", value, digits);
-  return fmt::format("{:.{}f} ± {:.{}f}", value, digits, factor * *estimate.sigma, digits);
+  const double sigma = factor * *estimate.sigma;
+  while (sigma > 0 && sigma < 0.5 * std::pow(10.0, -digits) && digits < kMaxDigits) ++digits;
+  return fmt::format("{:.{}f} ± {:.{}f}", value, digits, sigma, digits);
 }
 
 std::string TwistText(const std::optional<Estimate>& twist_deg) {

@@ -22,7 +22,7 @@ std::vector<MeasuredMarkerSides> MeasureForShape(const MarkerShape& shape, const
                                                  const Model* model,
                                                  const AdjustmentUncertainty* uncertainty) {
   if (model == nullptr) return MeasureSides(shape);
-  const double units_per_m = CompareShapes(ShapeFromModel(*model, layout), shape).scale;
+  const double units_per_m = ComputeReferenceMetrics(ShapeFromModel(*model, layout), shape).scale;
   std::vector<MeasuredMarkerSides> markers;
   if (uncertainty == nullptr) {
     markers = MeasureSides(*model, layout);

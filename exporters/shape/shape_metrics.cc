@@ -103,7 +103,7 @@ MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
 // alignment.
 void PredictDistances(const PointCovariance* covariance, const std::vector<CornerId>& ids,
                       const std::vector<Eigen::Vector3d>& x_in_shape_m,
-                      ShapeComparison* comparison) {
+                      ReferenceMetrics* comparison) {
   if (covariance == nullptr) return;
   std::vector<Point3DId> point3D_ids;
   for (const CornerId& id : ids) point3D_ids.push_back(Point3DIdFromCorner(id));
@@ -193,15 +193,15 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
   return metrics;
 }
 
-ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,
-                              const PointCovariance* covariance) {
+ReferenceMetrics ComputeReferenceMetrics(const MarkerShape& shape, const MarkerShape& reference,
+                                         const PointCovariance* covariance) {
   const auto [ids, x_in_shape_m, x_in_reference_m] = FindCommonCorners(shape, reference);
   VarianceMean point_variance;
   for (const CornerId& id : ids) {
     const auto& sigma_m = FindMarker(shape, id.marker_id)->sigma_m[id.corner];
     point_variance.Add(sigma_m ? std::optional(sigma_m->norm()) : std::nullopt);
   }
-  ShapeComparison comparison;
+  ReferenceMetrics comparison;
   comparison.num_points = static_cast<int>(x_in_shape_m.size());
   if (comparison.num_points < kMinCommonPoints) {
     throw DataError("the shape and its reference have " + std::to_string(comparison.num_points) +

@@ -62,7 +62,7 @@ struct MarkerDistance {
   double distance_after_scaling_m = 0.0;
 };
 
-struct ShapeComparison {
+struct ReferenceMetrics {
   int num_points = 0;
   Statistics distance_m;  // of common points after rigid alignment without scale
   double scale = 1.0;     // this shape / reference, from the alignment with scale
@@ -78,7 +78,7 @@ struct ShapeComparison {
 // Aligns common corners (not centres) by least squares. `covariance`, of the corners of the shape,
 // is used if it has all common corners. Throws DataError with fewer than three common corners or if
 // they all lie in one point.
-ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,
-                              const PointCovariance* covariance = nullptr);
+ReferenceMetrics ComputeReferenceMetrics(const MarkerShape& shape, const MarkerShape& reference,
+                                         const PointCovariance* covariance = nullptr);
 
 }  // namespace velamap

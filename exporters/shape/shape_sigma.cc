@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 
 void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
@@ -95,15 +97,15 @@ std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covari
   return own;
 }
 
-std::map<int, double> CenterSigmas(const PointCovariance& covariance) {
-  std::map<int, double> sigmas_m;
+std::map<int, double> CenterSigmas_mm(const PointCovariance& covariance) {
+  std::map<int, double> sigmas_mm;
   for (const Point3DId point3D_id : covariance.point3D_ids) {
     const int marker_id = CornerFromPoint3DId(point3D_id).marker_id;
-    if (sigmas_m.count(marker_id) > 0) continue;
+    if (sigmas_mm.count(marker_id) > 0) continue;
     const auto sigma_m = PointSigma(&covariance, marker_id, 0);
-    if (sigma_m) sigmas_m[marker_id] = sigma_m->norm();
+    if (sigma_m) sigmas_mm[marker_id] = kMmPerM * sigma_m->norm();
   }
-  return sigmas_m;
+  return sigmas_mm;
 }
 
 }  // namespace velamap

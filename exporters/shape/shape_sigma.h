@@ -49,7 +49,7 @@ std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int
 std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covariance);
 
 // 1 sigma in space, the root of the trace of the covariance, of the centre of each marker whose
-// four corners are known, m; by marker id.
-std::map<int, double> CenterSigmas(const PointCovariance& covariance);
+// four corners are known, mm; by marker id.
+std::map<int, double> CenterSigmas_mm(const PointCovariance& covariance);
 
 }  // namespace velamap

@@ -20,4 +20,6 @@ std::tm OutputDate() {
   return fmt::gmtime(time);
 }
 
+std::string DateText(const std::tm& utc) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", utc); }
+
 }  // namespace velamap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ctime>
+#include <string>
 
 namespace velamap {
 
@@ -10,5 +11,8 @@ namespace velamap {
 // seconds since 1970 (https://reproducible-builds.org/specs/source-date-epoch). Throws InputError
 // if that is not a valid time.
 std::tm OutputDate();
+
+// "2024-05-01 14:02 UTC".
+std::string DateText(const std::tm& utc);
 
 }  // namespace velamap

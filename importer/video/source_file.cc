@@ -15,6 +15,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/text/output_date.h"
 
 namespace velamap {
 namespace {
@@ -112,8 +113,8 @@ bool IsSamePlace(const SourceFile& known, const std::filesystem::path& path) {
 }
 
 std::string SourceText(const SourceFile& source) {
-  return fmt::format("{}, {} bytes of {:%Y-%m-%d %H:%M} UTC", source.name, source.size,
-                     fmt::gmtime(static_cast<std::time_t>(source.modified_s)));
+  const std::tm modified = fmt::gmtime(static_cast<std::time_t>(source.modified_s));
+  return fmt::format("{}, {} bytes of {}", source.name, source.size, DateText(modified));
 }
 
 }  // namespace velamap

@@ -50,7 +50,7 @@ TEST(ShapeReport, WithoutAListOfMarkersThereAreNoKeysOfIt) {
 }
 
 TEST(ShapeReport, ComparisonIsInMillimetres) {
-  ShapeComparison comparison;
+  ReferenceMetrics comparison;
   comparison.num_points = 2;
   comparison.distance_m = ComputeStatistics({0.001, 0.003});
   comparison.scale = 1.0125;

@@ -28,8 +28,8 @@ TEST(RenderClipTest, SailComesBackFromItsVideo) {
                                      "--camera_path", clip + "/camera.yml", "--layout_path",
                                      clip + "/layout.yml", "--workspace_path", workspace});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const ShapeComparison comparison = CompareShapes(ReadShapeCsv(workspace + "/shape/shape.csv"),
-                                                   ReadShapeCsv(clip + "/truth.csv"));
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(
+      ReadShapeCsv(workspace + "/shape/shape.csv"), ReadShapeCsv(clip + "/truth.csv"));
   RecordProperty("rms_mm", std::to_string(1e3 * comparison.distance_m.rms));
   RecordProperty("scale", std::to_string(comparison.scale));
   const std::size_t num_markers = ReadShapeCsv(clip + "/truth.csv").markers.size();

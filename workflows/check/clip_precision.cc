@@ -56,8 +56,8 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
   std::vector<double> sigmas_mm;
-  for (const auto& [marker_id, sigma_m] : CenterSigmas(summary.uncertainty.points)) {
-    sigmas_mm.push_back(kMmPerM * sigma_m);
+  for (const auto& [marker_id, sigma_mm] : CenterSigmas_mm(summary.uncertainty.points)) {
+    sigmas_mm.push_back(sigma_mm);
   }
   if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
   precision.num_markers = static_cast<int>(sigmas_mm.size());

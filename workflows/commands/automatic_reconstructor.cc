@@ -3,7 +3,6 @@
 #include <map>
 #include <memory>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -152,7 +151,7 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
       MakeReportInput(shape, options.importer.layout, summary.adjustment.steadiness);
   input.title = Source(options).filename().string();
   input.version = kVersion;
-  input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());
+  input.created = DateText(OutputDate());
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   input.sections = MakeReportSections(shape.sail.sections);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/design/mesh_reader.h"
 #include "workflows/options/option_parser.h"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "exporters/compare/section_comparison.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/sail/section_writer.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"

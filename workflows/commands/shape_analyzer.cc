@@ -65,7 +65,8 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
   constexpr double kTolerance_m = 1e-6;
   const auto max_distance_m = [&] {
     try {
-      return CompareShapes(ShapeFromModel(model, Layout()), shape).distance_after_scaling_m.max;
+      return ComputeReferenceMetrics(ShapeFromModel(model, Layout()), shape)
+          .distance_after_scaling_m.max;
     } catch (const DataError&) {
       throw InputError("--input_path " + paths.input_path +
                        ": shares fewer than three corners with " + paths.shape_path +
@@ -120,7 +121,7 @@ MetricsReport Analyze(const ShapeAnalyzerCommandOptions& options) {
   if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
   if (!options.paths.reference_path.empty()) {
     const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
-    AddMetrics(CompareShapes(shape, reference, covariance), &report);
+    AddMetrics(ComputeReferenceMetrics(shape, reference, covariance), &report);
     if (layout) {
       AddMetrics(CompareAdjacentDistances(shape, reference, *layout, covariance), &report);
     }

@@ -2,7 +2,6 @@
 #include <memory>
 #include <optional>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "exporters/compare/comparison.h"
@@ -237,7 +236,7 @@ void WriteComparisonFolder(const ShapeComparerCommandOptions& options, const Lay
   ComparisonPageInput input{series, reference ? &reference->shape : nullptr, layout};
   input.reference_name = NamesOfShapes({options.paths.reference_path}).front();
   input.version = kVersion;
-  input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());
+  input.created = DateText(OutputDate());
   input.color_limit_mm = options.color_limit_mm;
   AtomicFolder folder(options.comparison_path);
   WriteComparisonFiles(input, folder.TemporaryPath());

@@ -85,13 +85,11 @@ PlanPrecision SimulatePlan(const PlannedSurface& surface, const Camera& camera,
       AdjustWithMarkers(adjustment, surface.layout, clip.corner_errors, &clip.model);
   const PointCovariance& points = summary.uncertainty.points;
   PlanPrecision precision;
-  for (const auto& [marker_id, sigma_m] : CenterSigmas(points)) {
-    precision.marker_sigma_mm[marker_id] = kMmPerM * sigma_m;
-  }
+  precision.marker_sigma_mm = CenterSigmas_mm(points);
   if (precision.marker_sigma_mm.empty()) throw DataError("no marker is left with all four corners");
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
-  const ShapeComparison comparison =
-      CompareShapes(ShapeFromModel(clip.model, surface.layout, &points), surface.shape, &points);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(
+      ShapeFromModel(clip.model, surface.layout, &points), surface.shape, &points);
   precision.distance_sigma_mm = kMmPerM * comparison.distance_sigma_m.value();
   precision.distance_after_scaling_sigma_mm =
       kMmPerM * comparison.distance_after_scaling_sigma_m.value();

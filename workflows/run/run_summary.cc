@@ -47,8 +47,8 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   if (metrics.num_layout_markers) WriteFormatted(out, " of {}", *metrics.num_layout_markers);
   if (summary.shape.uncertainty) {
     std::vector<double> sigmas_mm;
-    for (const auto& [marker_id, sigma_m] : CenterSigmas(summary.shape.uncertainty->points)) {
-      sigmas_mm.push_back(kMmPerM * sigma_m);
+    for (const auto& [marker_id, sigma_mm] : CenterSigmas_mm(summary.shape.uncertainty->points)) {
+      sigmas_mm.push_back(sigma_mm);
     }
     if (!sigmas_mm.empty()) {
       WriteFormatted(out, ", known to {:.2g} mm (1 sigma, median)", Median(std::move(sigmas_mm)));

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "exporters/compare/comparison_sigma.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "importer/text/csv.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/example_covariance.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/geometry/rigid3.h"

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
@@ -57,7 +57,7 @@ MarkerShape Ball(double radius_m) {
   return shape;
 }
 
-TEST(ShapeComparisonMesh, DistancesToASphereWithoutAlignment) {
+TEST(ShapeDeviationMesh, DistancesToASphereWithoutAlignment) {
   const MeshDistance mesh(SphereMesh(1.0, 150));
   for (const double offset_m : {0.03, -0.02}) {
     const ShapeDeviation deviation =
@@ -70,7 +70,7 @@ TEST(ShapeComparisonMesh, DistancesToASphereWithoutAlignment) {
   }
 }
 
-TEST(ShapeComparisonMesh, FindsItsPlaceFromFarAway) {
+TEST(ShapeDeviationMesh, FindsItsPlaceFromFarAway) {
   const MeshDistance mesh(SailMesh());
   const MarkerShape far = Moved(FarPose(), Sail());
   const ShapeDeviation deviation = CompareWithMesh(Exact(far), mesh, BoatLayout(), {});
@@ -86,7 +86,7 @@ TEST(ShapeComparisonMesh, FindsItsPlaceFromFarAway) {
   EXPECT_THAT(deviation.alignment.notes, IsEmpty());
 }
 
-TEST(ShapeComparisonMesh, AFewMarkersThatDifferDoNotPullTheRestAlong) {
+TEST(ShapeDeviationMesh, AFewMarkersThatDifferDoNotPullTheRestAlong) {
   const MeshDistance mesh(SailMesh());
   const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(Sail(), 33));
   const MarkerShape dented = Shifted({33}, -0.08 * normal, Sail());
@@ -97,7 +97,7 @@ TEST(ShapeComparisonMesh, AFewMarkersThatDifferDoNotPullTheRestAlong) {
   }
 }
 
-TEST(ShapeComparisonMesh, AsIsStaysNearTheStart) {
+TEST(ShapeDeviationMesh, AsIsStaysNearTheStart) {
   const MeshDistance mesh(SailMesh());
   const Rigid3 near{Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitX())),
                     {0.02, 0.03, -0.02}};
@@ -108,7 +108,7 @@ TEST(ShapeComparisonMesh, AsIsStaysNearTheStart) {
 }
 
 // The surface covers the lower half of the sail only; markers on the other half have no distance.
-TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
+TEST(ShapeDeviationMesh, MarkersBesideTheSurfaceAreNotMeasured) {
   TriangleMesh half = SailMesh();
   auto& t = half.triangles;
   t.erase(std::remove_if(t.begin(), t.end(),
@@ -134,7 +134,7 @@ TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
 
 // The design ends at the outer markers, as a surface through markers does, and noise takes half of
 // those beyond its edge.
-TEST(ShapeComparisonMesh, MarkersAtTheEdgeOfADesignCount) {
+TEST(ShapeDeviationMesh, MarkersAtTheEdgeOfADesignCount) {
   const MeshDistance mesh(SailMesh(0.0));
   const MarkerShape sail = Sail(0.004);
   const PointCovariance covariance = CovarianceFromSigmas(sail);
@@ -166,7 +166,7 @@ TEST(ShapeComparisonMesh, MarkersAtTheEdgeOfADesignCount) {
   EXPECT_LE(num_far, 6);  // of 600, 0.27 %
 }
 
-TEST(ShapeComparisonMesh, MarkersFarBeyondTheEdgeAreBeside) {
+TEST(ShapeDeviationMesh, MarkersFarBeyondTheEdgeAreBeside) {
   const MeshDistance mesh(SailMesh(-0.05));
   const MarkerShape sail = Sail();
   const auto num_beside = [&](double tolerance_mm) {
@@ -179,7 +179,7 @@ TEST(ShapeComparisonMesh, MarkersFarBeyondTheEdgeAreBeside) {
   ExpectThrows<InputError>([&] { num_beside(-1.0); }, {"--edge_tolerance"});
 }
 
-TEST(ShapeComparisonMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
+TEST(ShapeDeviationMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
   const ShapeDeviation ball =
       CompareWithMesh(Exact(Ball(1.0)), MeshDistance(SphereMesh(1.0, 40)), {}, {});
   MarkerShape board;
@@ -196,7 +196,7 @@ TEST(ShapeComparisonMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
   EXPECT_LT(ball.distance_m.rms, 5e-3);
 }
 
-TEST(ShapeComparisonMesh, SigmasAreWhatRepetitionsScatterBy) {
+TEST(ShapeDeviationMesh, SigmasAreWhatRepetitionsScatterBy) {
   const MeshDistance mesh(SailMesh());
   const MarkerShape sail = Sail(0.002);
   const UncertainShape uncertain{sail, CovarianceFromSigmas(sail)};
@@ -217,7 +217,7 @@ TEST(ShapeComparisonMesh, SigmasAreWhatRepetitionsScatterBy) {
 }
 
 // Feet go back and forth between triangles, whose normals differ.
-TEST(ShapeComparisonMesh, FitsToTheFacetsOfAMeshConverge) {
+TEST(ShapeDeviationMesh, FitsToTheFacetsOfAMeshConverge) {
   const MeshDistance mesh(SailMesh());
   const MarkerShape sail = Sail(0.002);
   SampleShapes(sail, CovarianceFromSigmas(sail), 20, [&](const MarkerShape& sample) {
@@ -228,7 +228,7 @@ TEST(ShapeComparisonMesh, FitsToTheFacetsOfAMeshConverge) {
 
 // The surface that velamap fits to the markers lies on the cloth, and so do the corners; the means
 // of the corners lie up to 2 mm beside it.
-TEST(ShapeComparisonMesh, AShapeIsAsFarFromItsOwnSurfaceAsTheResidualsSay) {
+TEST(ShapeDeviationMesh, AShapeIsAsFarFromItsOwnSurfaceAsTheResidualsSay) {
   const MarkerShape sail = Sail(0.0005);
   const PointCovariance covariance = CovarianceFromSigmas(sail);
   int num_significant = 0, num_markers = 0;
@@ -255,7 +255,7 @@ TEST(ShapeComparisonMesh, AShapeIsAsFarFromItsOwnSurfaceAsTheResidualsSay) {
   EXPECT_LT(num_significant, 0.05 * num_markers);
 }
 
-TEST(ShapeComparisonMesh, TheSigmaOfTheSurfaceAddsToThatOfTheMarkers) {
+TEST(ShapeDeviationMesh, TheSigmaOfTheSurfaceAddsToThatOfTheMarkers) {
   const MeshDistance mesh(SailMesh());
   const UncertainShape sail = WithSigmas(Sail(0.002));
   const auto compare = [&](double surface_sigma_m) {
@@ -268,7 +268,7 @@ TEST(ShapeComparisonMesh, TheSigmaOfTheSurfaceAddsToThatOfTheMarkers) {
   }
 }
 
-TEST(ShapeComparisonMesh, UnitHintForAWrongUnit) {
+TEST(ShapeDeviationMesh, UnitHintForAWrongUnit) {
   TriangleMesh mesh = SailMesh();
   EXPECT_FALSE(UnitHint(BoatShape(), MeshDistance(mesh)).has_value());
   for (Eigen::Vector3d& x : mesh.vertices_m) x *= 1e3;
@@ -277,7 +277,7 @@ TEST(ShapeComparisonMesh, UnitHintForAWrongUnit) {
   EXPECT_EQ(UnitHint(BoatShape(), MeshDistance(mesh)), 1e3);
 }
 
-TEST(ShapeComparisonMesh, RefusesWhatASurfaceCannotDo) {
+TEST(ShapeDeviationMesh, RefusesWhatASurfaceCannotDo) {
   const MeshDistance mesh(SailMesh());
   ExpectThrows<InputError>(
       [&] { AlignToMesh(BoatShape(), mesh, FitBy(AlignmentMethod::kReferencePart)); },

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/comparison_page/comparison_ply.h"
 #include "exporters/shape/sail_lines.h"
 #include "tests/exporters/compare/example_comparison.h"

@@ -263,5 +263,17 @@ TEST(SectionDrawing, SvgIsWellFormedToOneScaleAndHasTheNumbers) {
               1e-4);
 }
 
+TEST(SectionDrawing, SvgRoundsNoSigmaToZero) {
+  Example example = MakeExample();
+  for (Section& section : example.report.sections) {
+    section.camber.sigma = 2e-5;
+    section.entry_angle_deg.sigma = 0.004;
+  }
+  const std::string svg = Written(WriteSectionProfilesSvg, example);
+  EXPECT_THAT(svg, HasSubstr(" ± 0.002 %"));
+  EXPECT_THAT(svg, HasSubstr(" ± 0.004°"));
+  EXPECT_THAT(svg, Not(HasSubstr("± 0.0°")));
+}
+
 }  // namespace
 }  // namespace velamap

@@ -120,14 +120,14 @@ TEST(ShapeMetrics, DoNotSeeMarkersThatAllShrinkBeforeScaling) {
   ScaleModel(EstimateScale(model, ExampleLayout()), &model);
   const MarkerShape shape = ShapeFromModel(model, ExampleLayout());
   EXPECT_LT(ComputeShapeMetrics(shape, ExampleLayout()).area_error_percent.max, 1e-9);
-  EXPECT_GT(CompareShapes(shape, ExampleShape()).scale, 1.04);
+  EXPECT_GT(ComputeReferenceMetrics(shape, ExampleShape()).scale, 1.04);
 }
 
-TEST(CompareShapes, FrameAndScaleAreToldApart) {
+TEST(ReferenceMetrics, FrameAndScaleAreToldApart) {
   const MarkerShape reference = ExampleShape();
   for (const double scale : {0.9, 1.0, 1.02}) {
     const MarkerShape shape = Transformed(ExampleSim3(scale), reference);
-    const ShapeComparison comparison = CompareShapes(shape, reference);
+    const ReferenceMetrics comparison = ComputeReferenceMetrics(shape, reference);
     EXPECT_EQ(comparison.num_points, 32);
     EXPECT_NEAR(comparison.scale, scale, 1e-12);
     EXPECT_LT(comparison.distance_after_scaling_m.max, 1e-12);
@@ -139,32 +139,32 @@ TEST(CompareShapes, FrameAndScaleAreToldApart) {
   }
 }
 
-TEST(CompareShapes, OnlyCornersThatBothHaveAreUsed) {
+TEST(ReferenceMetrics, OnlyCornersThatBothHaveAreUsed) {
   const MarkerShape reference = ExampleShape();
   MarkerShape shape = Transformed(ExampleSim3(1.0), reference);
   shape.markers[0].x_in_shape_m[2].reset();                     // a corner gone
   shape.markers[1].x_in_shape_m[0] = Eigen::Vector3d(9, 9, 9);  // a centre is no point
   shape.markers.push_back(SquareMarker(500, 0.1));              // not in the reference
-  const ShapeComparison comparison = CompareShapes(shape, reference);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(shape, reference);
   EXPECT_EQ(comparison.num_points, 31);
   EXPECT_LT(comparison.distance_m.max, 1e-12);
 }
 
-TEST(CompareShapes, ADisplacedCornerShowsInTheMaximum) {
+TEST(ReferenceMetrics, ADisplacedCornerShowsInTheMaximum) {
   const MarkerShape reference = ExampleShape();
   MarkerShape shape = reference;
   *shape.markers[3].x_in_shape_m[4] += Eigen::Vector3d(0, 0, 0.01);
-  const ShapeComparison comparison = CompareShapes(shape, reference);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(shape, reference);
   EXPECT_NEAR(comparison.distance_m.max, 0.01, 0.002);
   EXPECT_LT(comparison.distance_m.median, 0.002);
 }
 
-TEST(CompareShapes, DistancesOfMarkersAddUpToTheWhole) {
+TEST(ReferenceMetrics, DistancesOfMarkersAddUpToTheWhole) {
   const MarkerShape reference = ExampleShape();
   MarkerShape shape = Transformed(ExampleSim3(1.01), reference);
   for (auto& x : shape.markers[5].x_in_shape_m) *x += Eigen::Vector3d(0, 0, 0.02);
   shape.markers[2].x_in_shape_m[4].reset();
-  const ShapeComparison comparison = CompareShapes(shape, reference);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(shape, reference);
   ASSERT_EQ(comparison.markers.size(), 8u);
   double sum = 0.0, sum_after_scaling = 0.0;
   for (const MarkerDistance& marker : comparison.markers) {
@@ -181,31 +181,31 @@ TEST(CompareShapes, DistancesOfMarkersAddUpToTheWhole) {
   EXPECT_EQ(worst->marker_id, 6);
 }
 
-TEST(CompareShapes, AMirroredShapeDoesNotPass) {
+TEST(ReferenceMetrics, AMirroredShapeDoesNotPass) {
   const MarkerShape reference = ExampleShape();
   MarkerShape shape = reference;
   for (ShapeMarker& marker : shape.markers) {
     for (auto& x : marker.x_in_shape_m) x->x() = -x->x();
   }
-  EXPECT_GT(CompareShapes(shape, reference).distance_m.mean, 0.01);
+  EXPECT_GT(ComputeReferenceMetrics(shape, reference).distance_m.mean, 0.01);
 }
 
-TEST(CompareShapes, TooFewCommonCornersAreSaid) {
+TEST(ReferenceMetrics, TooFewCommonCornersAreSaid) {
   MarkerShape shape, reference;
   shape.markers = {SquareMarker(1, 0.1), SquareMarker(2, 0.1)};
   reference.markers = {SquareMarker(2, 0.1), SquareMarker(3, 0.1)};
-  EXPECT_EQ(CompareShapes(shape, reference).num_points, 4);
+  EXPECT_EQ(ComputeReferenceMetrics(shape, reference).num_points, 4);
   for (const int corner : {0, 1, 2}) reference.markers[0].x_in_shape_m[corner].reset();
-  ExpectThrows<DataError>([&] { CompareShapes(shape, reference); },
+  ExpectThrows<DataError>([&] { ComputeReferenceMetrics(shape, reference); },
                           {"2 marker corners in common; an alignment needs 3"});
 }
 
-TEST(CompareShapes, CornersInOnePointAreSaid) {
+TEST(ReferenceMetrics, CornersInOnePointAreSaid) {
   MarkerShape shape, reference;
   shape.markers = {SquareMarker(1, 0.0)};
   reference.markers = {SquareMarker(1, 0.1)};
-  EXPECT_THROW(CompareShapes(shape, reference), DataError);
-  EXPECT_THROW(CompareShapes(reference, shape), DataError);
+  EXPECT_THROW(ComputeReferenceMetrics(shape, reference), DataError);
+  EXPECT_THROW(ComputeReferenceMetrics(reference, shape), DataError);
 }
 
 }  // namespace

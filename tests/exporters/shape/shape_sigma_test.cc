@@ -203,12 +203,13 @@ TEST(ShapeSigma, WhatIsNotKnownIsNotThere) {
 TEST(ShapeSigma, OfAComparisonIsTheRootOfTheMeanVariance) {
   MarkerShape shape = ShapeFromModel(ExampleModel(), ExampleLayout());
   const MarkerShape reference = shape;
-  EXPECT_FALSE(CompareShapes(shape, reference).distance_sigma_m.has_value());
+  EXPECT_FALSE(ComputeReferenceMetrics(shape, reference).distance_sigma_m.has_value());
   for (ShapeMarker& marker : shape.markers) {
     marker.sigma_m.fill(Eigen::Vector3d(1e-3, 2e-3, marker.marker_id < 5 ? 2e-3 : 0.0));
   }
   // Squares 9 and 5 mm^2, four markers each.
-  EXPECT_NEAR(*CompareShapes(shape, reference).distance_sigma_m, std::sqrt(7.0) * 1e-3, 1e-12);
+  EXPECT_NEAR(*ComputeReferenceMetrics(shape, reference).distance_sigma_m, std::sqrt(7.0) * 1e-3,
+              1e-12);
 }
 
 // Mean square over sampled shapes of the compared points after their own alignment.
@@ -217,11 +218,11 @@ TEST(ShapeSigma, OfAComparisonIsThatAfterItsOwnAlignments) {
   const PointCovariance covariance = ExampleCovariance(ExampleModel(), 2e-4, 11);
   MarkerShape part = shape;
   part.markers.resize(3);
-  const ShapeComparison predicted = CompareShapes(shape, part, &covariance);
+  const ReferenceMetrics predicted = ComputeReferenceMetrics(shape, part, &covariance);
   double sum = 0.0, sum_after_scaling = 0.0;
   constexpr int kNumSamples = 2000;
   SampleShapes(shape, covariance, kNumSamples, [&](const MarkerShape& sample) {
-    const ShapeComparison comparison = CompareShapes(sample, part);
+    const ReferenceMetrics comparison = ComputeReferenceMetrics(sample, part);
     sum += std::pow(comparison.distance_m.rms, 2);
     sum_after_scaling += std::pow(comparison.distance_after_scaling_m.rms, 2);
   });
@@ -236,7 +237,7 @@ TEST(ShapeSigma, OfAComparisonNeedsACovarianceOfAllItsPoints) {
   const MarkerShape shape = CrookedShape();
   const PointCovariance covariance =
       Subset(ExampleCovariance(ExampleModel(), 2e-4, 11), {11, 12, 13, 14});
-  const ShapeComparison comparison = CompareShapes(shape, shape, &covariance);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(shape, shape, &covariance);
   EXPECT_FALSE(comparison.distance_sigma_m.has_value());
   EXPECT_FALSE(comparison.distance_after_scaling_sigma_m.has_value());
 }

@@ -164,7 +164,7 @@ class RenderedPicturesTest : public ::testing::Test {
   }
 
   void ExpectTrueShape(double max_rms_m) {
-    const ShapeComparison comparison = CompareShapes(
+    const ReferenceMetrics comparison = ComputeReferenceMetrics(
         ReadShapeCsv((dir_ / "workspace/shape/shape.csv").string()), TrueShape(*scene_));
     EXPECT_EQ(comparison.num_points, 4 * static_cast<int>(scene_->x_in_world.size()));
     EXPECT_LT(comparison.distance_m.rms, max_rms_m);

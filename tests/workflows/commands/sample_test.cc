@@ -82,8 +82,8 @@ double RmsSigma(const MarkerShape& shape) {
 
 std::string Text(double value) { return fmt::format("{:.5g}", value); }
 
-ShapeComparison CompareWithReference(const fs::path& sample, const MarkerShape& shape) {
-  return CompareShapes(shape, ReadShapeCsv((sample / "reference.csv").string()));
+ReferenceMetrics CompareWithReference(const fs::path& sample, const MarkerShape& shape) {
+  return ComputeReferenceMetrics(shape, ReadShapeCsv((sample / "reference.csv").string()));
 }
 
 // Number of markers of each part of the cube that two images or more show.
@@ -182,9 +182,9 @@ TEST(SailTest, ComesBackFromItsClip) {
       run.out,
       ContainsRegex("section sail h[0-9] at [0-9.]+ m: camber [0-9.]+ % at [0-9]+ %, twist "));
   EXPECT_TRUE(fs::exists(dir / "workspace/shape/surface.step"));
-  const ShapeComparison comparison =
-      CompareShapes(ReadShapeCsv((dir / "workspace/shape/shape.csv").string()),
-                    ReadShapeCsv((kSail / "truth.csv").string()));
+  const ReferenceMetrics comparison =
+      ComputeReferenceMetrics(ReadShapeCsv((dir / "workspace/shape/shape.csv").string()),
+                              ReadShapeCsv((kSail / "truth.csv").string()));
   EXPECT_EQ(comparison.markers.size(), 102u);
   EXPECT_LT(comparison.distance_m.rms, 1e-3);
   EXPECT_LT(comparison.distance_after_scaling_m.rms, 5e-4);
@@ -231,7 +231,7 @@ TEST(CubeTest, NamesAndOrderOfThePhotographsHardlyChangeTheShape) {
   ASSERT_EQ(renamed_run.exit_code, 0) << renamed_run.err;
   const MarkerShape shape = ReadShapeCsv((dir / "cube/shape/shape.csv").string());
   const MarkerShape renamed = ReadShapeCsv((dir / "renamed/shape/shape.csv").string());
-  const ShapeComparison comparison = CompareShapes(renamed, shape);
+  const ReferenceMetrics comparison = ComputeReferenceMetrics(renamed, shape);
   EXPECT_GE(comparison.num_points, kShareInBoth * NumCorners(shape));
   EXPECT_GE(comparison.num_points, kShareInBoth * NumCorners(renamed));
   const AdjustmentUncertainty uncertainty = ReadUncertainty((dir / "cube/sparse/0").string());
@@ -246,7 +246,7 @@ TEST(CubeTest, NamesAndOrderOfThePhotographsHardlyChangeTheShape) {
 TEST(StylusTest, AllMarkersComeNearTheDesign) {
   const MarkerShape shape = ReadShapeCsv((StylusWorkspace() / "shape/shape.csv").string());
   EXPECT_EQ(NumWholeMarkers(shape), 8);
-  const ShapeComparison comparison = CompareWithReference(kStylus, shape);
+  const ReferenceMetrics comparison = CompareWithReference(kStylus, shape);
   EXPECT_EQ(comparison.num_points, 32);
   EXPECT_LE(comparison.distance_m.rms, 0.0006);
   RecordProperty("rms_mm", Text(1e3 * comparison.distance_m.rms));
@@ -260,7 +260,7 @@ TEST(AprilGridTest, ScaleIsThatOfTheLayout) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const MarkerShape shape = ReadShapeCsv((workspace / "shape/shape.csv").string());
   EXPECT_EQ(NumWholeMarkers(shape), 20);
-  const ShapeComparison comparison = CompareWithReference(kAprilGrid, shape);
+  const ReferenceMetrics comparison = CompareWithReference(kAprilGrid, shape);
   EXPECT_EQ(comparison.num_points, 80);
   EXPECT_NEAR(comparison.scale, 1.0, 1e-3);
   EXPECT_LE(comparison.distance_m.rms, 0.25e-3);
@@ -283,7 +283,7 @@ TEST_F(BoardVideoTest, InvertedPrintComesNearTheDesign) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const MarkerShape shape = ReadShapeCsv((workspace() / "shape/shape.csv").string());
   EXPECT_EQ(NumWholeMarkers(shape), 10);
-  const ShapeComparison comparison = CompareWithReference(kBoardVideo, shape);
+  const ReferenceMetrics comparison = CompareWithReference(kBoardVideo, shape);
   EXPECT_EQ(comparison.num_points, 40);
   EXPECT_LE(comparison.distance_m.rms, 0.0013);
   RecordProperty("rms_mm", Text(1e3 * comparison.distance_m.rms));

@@ -1,7 +1,7 @@
 // The command shape_comparer on files.
 
 #include "exporters/compare/comparison_sigma.h"
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"

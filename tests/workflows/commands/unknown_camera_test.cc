@@ -62,7 +62,7 @@ class UnknownCameraTest : public ::testing::Test {
   double ShapeError(const std::string& workspace) {
     const MarkerShape shape =
         ReadShapeCsv((dir_.path() / workspace / "shape" / "shape.csv").string());
-    return CompareShapes(shape, TrueShape(*scene_)).distance_m.rms;
+    return ComputeReferenceMetrics(shape, TrueShape(*scene_)).distance_m.rms;
   }
 
   static SyntheticScene* scene_;

@@ -1,4 +1,4 @@
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +121,7 @@ double ScaleOf(const Alignment& alignment, const MarkerShape& shape, const Marke
   const auto counts = [&](const ShapeMarker& marker) {
     return ids.empty() || ids.count(marker.marker_id) > 0;
   };
-  return CompareShapes(Keep(shape, counts), Keep(reference, counts)).scale;
+  return ComputeReferenceMetrics(Keep(shape, counts), Keep(reference, counts)).scale;
 }
 
 // How far a marker may lie beyond the edge, m.

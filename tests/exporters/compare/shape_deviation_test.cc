@@ -1,4 +1,4 @@
-#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/shape_deviation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ const MarkerDeviation& Find(const ShapeDeviation& deviation, int marker_id) {
   return *it;
 }
 
-TEST(ShapeComparison, AShapeMovedRigidlyDoesNotDiffer) {
+TEST(ShapeDeviation, AShapeMovedRigidlyDoesNotDiffer) {
   const MarkerShape moved = Moved(FarPose(), BoatShape());
   for (const AlignmentOptions& options :
        {By(AlignmentMethod::kAuto), By(AlignmentMethod::kReferencePart),
@@ -52,7 +52,7 @@ TEST(ShapeComparison, AShapeMovedRigidlyDoesNotDiffer) {
   EXPECT_GT(as_is.difference_m.min, 1.0);
 }
 
-TEST(ShapeComparison, AMovedPartShowsByExactlyItsMotion) {
+TEST(ShapeDeviation, AMovedPartShowsByExactlyItsMotion) {
   const Eigen::Vector3d shift_m(0.01, 0.03, -0.02);
   const MarkerShape boat = BoatShape(), trimmed = Shifted(IdsOf("sail"), shift_m, boat);
   const ShapeDeviation deviation =
@@ -71,7 +71,7 @@ TEST(ShapeComparison, AMovedPartShowsByExactlyItsMotion) {
 }
 
 // Distances along the outward normal of the marker are positive.
-TEST(ShapeComparison, SignIsThatOfTheReferencesNormal) {
+TEST(ShapeDeviation, SignIsThatOfTheReferencesNormal) {
   const MarkerShape reference = BoatShape();
   const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(reference, 33));
   for (const double distance_m : {0.02, -0.005}) {
@@ -82,7 +82,7 @@ TEST(ShapeComparison, SignIsThatOfTheReferencesNormal) {
   }
 }
 
-TEST(ShapeComparison, SwappingTheTwoTurnsTheSignOfTheVector) {
+TEST(ShapeDeviation, SwappingTheTwoTurnsTheSignOfTheVector) {
   const MarkerShape other = Shifted(IdsOf("sail"), {0.01, 0.03, -0.02}, BoatShape());
   const ShapeDeviation there = CompareWithShape(Exact(other), Exact(BoatShape()), BoatLayout(), {});
   const ShapeDeviation back = CompareWithShape(Exact(BoatShape()), Exact(other), BoatLayout(), {});
@@ -92,7 +92,7 @@ TEST(ShapeComparison, SwappingTheTwoTurnsTheSignOfTheVector) {
   EXPECT_NEAR(*there.scale * *back.scale, 1.0, 1e-9);
 }
 
-TEST(ShapeComparison, ScaleIsReportedAndNeverFitted) {
+TEST(ShapeDeviation, ScaleIsReportedAndNeverFitted) {
   MarkerShape larger = BoatShape();
   for (ShapeMarker& marker : larger.markers) {
     for (auto& x : marker.x_in_shape_m) *x *= 1.01;
@@ -103,7 +103,7 @@ TEST(ShapeComparison, ScaleIsReportedAndNeverFitted) {
   EXPECT_GT(deviation.difference_m.max, 0.02);
 }
 
-TEST(ShapeComparison, WithoutEnoughOfTheReferencePartItIsABestFitAndSaysSo) {
+TEST(ShapeDeviation, WithoutEnoughOfTheReferencePartItIsABestFitAndSaysSo) {
   const MarkerShape few = Without({120, 121, 122, 123}, BoatShape());
   const ShapeDeviation deviation =
       CompareWithShape(Exact(few), Exact(BoatShape()), BoatLayout(), {});
@@ -117,7 +117,7 @@ TEST(ShapeComparison, WithoutEnoughOfTheReferencePartItIsABestFitAndSaysSo) {
   EXPECT_THAT(without_layout.alignment.notes, ElementsAre(HasSubstr("names no reference part")));
 }
 
-TEST(ShapeComparison, LinesAndPartsHaveTheirOwnFigures) {
+TEST(ShapeDeviation, LinesAndPartsHaveTheirOwnFigures) {
   MarkerShape trimmed = BoatShape();
   for (const int id : {31, 32, 33, 34, 35, 36}) {
     const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(trimmed, id));
@@ -142,7 +142,7 @@ TEST(ShapeComparison, LinesAndPartsHaveTheirOwnFigures) {
 
 // Sigmas of the difference match its scatter, including that of the alignment: a marker of the sail
 // is far from the hull that defines the frame.
-TEST(ShapeComparison, SigmasAreWhatRepetitionsScatterBy) {
+TEST(ShapeDeviation, SigmasAreWhatRepetitionsScatterBy) {
   const MarkerShape reference = BoatShape(0.002), shape = Moved(FarPose(), BoatShape(0.001));
   for (const AlignmentMethod method :
        {AlignmentMethod::kReferencePart, AlignmentMethod::kBestFit, AlignmentMethod::kNone}) {
@@ -175,7 +175,7 @@ TEST(ShapeComparison, SigmasAreWhatRepetitionsScatterBy) {
   }
 }
 
-TEST(ShapeComparison, SignificanceIsDistanceOverSigma) {
+TEST(ShapeDeviation, SignificanceIsDistanceOverSigma) {
   const MarkerShape reference = BoatShape(0.001);
   const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(reference, 33));
   const ShapeDeviation deviation =
@@ -188,7 +188,7 @@ TEST(ShapeComparison, SignificanceIsDistanceOverSigma) {
   EXPECT_EQ(deviation.lines[2].num_significant, 1);
 }
 
-TEST(ShapeComparison, AShapeWithoutSigmasGivesNone) {
+TEST(ShapeDeviation, AShapeWithoutSigmasGivesNone) {
   const MarkerShape shape = BoatShape();
   const ShapeDeviation one_sided =
       CompareWithShape(WithSigmas(shape), WithSigmas(BoatShape(0.001)), BoatLayout(), {});
@@ -201,7 +201,7 @@ TEST(ShapeComparison, AShapeWithoutSigmasGivesNone) {
   EXPECT_EQ(deviation.num_with_sigma, 0);
 }
 
-TEST(ShapeComparison, CovarianceFromSigmasHasTheSigmasOfTheFile) {
+TEST(ShapeDeviation, CovarianceFromSigmasHasTheSigmasOfTheFile) {
   MarkerShape shape = BoatShape(0.002);
   for (ShapeMarker& marker : shape.markers) {
     marker.sigma_m[0] = Eigen::Vector3d(0.0011, 0.002, 0.0015);  // corners err together in part
@@ -218,7 +218,7 @@ TEST(ShapeComparison, CovarianceFromSigmasHasTheSigmasOfTheFile) {
   EXPECT_TRUE(dense.isApprox(dense.transpose()));
 }
 
-TEST(ShapeComparison, ShapesThatHaveNothingInCommon) {
+TEST(ShapeDeviation, ShapesThatHaveNothingInCommon) {
   const auto compare = [](const MarkerShape& a, const MarkerShape& b, const AlignmentOptions& by) {
     CompareWithShape(Exact(a), Exact(b), BoatLayout(), by);
   };
@@ -244,7 +244,7 @@ TEST(ShapeComparison, ShapesThatHaveNothingInCommon) {
   ExpectThrows<DataError>([&] { compare(thin, thin, {}); }, {"on one line"});
 }
 
-TEST(ShapeComparison, NamesOfTheMethods) {
+TEST(ShapeDeviation, NamesOfTheMethods) {
   for (const char* name : {"auto", "reference_part", "markers", "best_fit", "none"}) {
     EXPECT_EQ(AlignmentMethodName(AlignmentMethodFromName(name, "--align")), name);
   }
@@ -252,7 +252,7 @@ TEST(ShapeComparison, NamesOfTheMethods) {
                            {"--align", "hull", "reference_part"});
 }
 
-TEST(ShapeComparison, ListOfMarkers) {
+TEST(ShapeDeviation, ListOfMarkers) {
   EXPECT_THAT(MarkerIdsFromText("120,7,0", "--align_markers"), ElementsAre(120, 7, 0));
   EXPECT_THAT(MarkerIdsFromText("120-122,7", "--align_markers"), ElementsAre(120, 121, 122, 7));
   for (const char* text : {"", "1,", "1;2", "1, 2", "a", "-1", "8192", "1,,2"}) {
