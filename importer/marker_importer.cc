@@ -39,11 +39,12 @@ std::string ProgressLine(const FrameResult& result) {
 // The estimate in the database, so that later frames are treated like the first ones; otherwise a
 // new one, which is added to the database and whose time is added to `time`.
 FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
-                              ColmapDatabase* database, BusyTime* time) {
+                              const ProgressCallback& progress, ColmapDatabase* database,
+                              BusyTime* time) {
   if (const auto known = database->ReadFormation()) return *known;
   const ProcessTimer timer;
-  const FormationEstimate estimate =
-      EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector);
+  const FormationEstimate estimate = EstimateFormationOfSource(
+      options.image_path, options.video, options.num_threads, detector, progress);
   database->WriteFormation(estimate);
   TakeStageTimes();  // drops what the search for samples charged to other stages
   *time = timer.Elapsed();
@@ -140,8 +141,7 @@ void CheckImporterOptions(const MarkerImporterOptions& options) {
 
 // Imports into a database that is new or may be added to, and removes a new one if that fails.
 ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector detector,
-                        const std::optional<VideoOptions>& frames,
-                        const ProgressCallback& progress) {
+                        const std::optional<VideoOptions>& frames, const ImportProgress& progress) {
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   std::vector<std::string> known_names;
@@ -156,8 +156,8 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
                                    detector.options.estimate_formation;
   BusyTime formation_time;
   if (estimates_formation) {
-    detector.formation =
-        ImageFormation(FormationOf(options, detector, &database, &formation_time).parameters);
+    detector.formation = ImageFormation(
+        FormationOf(options, detector, progress.formation, &database, &formation_time).parameters);
   }
   RecordPart(options, DescribeDetector(detector), false, &database);
   ImportReport report;
@@ -165,7 +165,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
     MarkerImporterOptions searched = options;
     searched.video = *frames;
     report = ImportFrames(searched, detector, known_names, NumThreads(options.num_threads),
-                          progress, &database);
+                          progress.frames, &database);
     if (estimates_formation) WarnOfSeveralCameras(options.database_path, database);
   }
   report.num_images_present = static_cast<int>(known_names.size());
@@ -178,7 +178,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
 
 }  // namespace
 
-ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
+ImportReport ImportMarkers(const MarkerImporterOptions& options, const ImportProgress& progress) {
   TakeStageTimes();  // drops those of an earlier call on this thread
   CheckImporterOptions(options);
   ArucoDetectionOptions detection = options.detection;

@@ -2,11 +2,11 @@
 
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "importer/base/progress_callback.h"
 #include "importer/base/stage_timer.h"
 #include "importer/camera/camera.h"
 #include "importer/database/part_table.h"
@@ -17,10 +17,6 @@
 #include "importer/video/video_options.h"
 
 namespace velamap {
-
-// Called once before the first frame is read, with done = 0, and then after each frame. `total` is
-// 0 if it is unknown; `message` is a line about the last frame.
-using ProgressCallback = std::function<void(int done, int total, const std::string& message)>;
 
 struct MarkerImporterOptions {
   std::string image_path;     // folder of images, or a video file
@@ -81,6 +77,11 @@ struct ImportReport {
   ImportTimes times;
 };
 
+struct ImportProgress {
+  ProgressCallback formation;  // of the estimate of camera and print; from any thread
+  ProgressCallback frames;     // of the frames that are searched for markers
+};
+
 // Streams frames through a bounded queue, detects their markers on all cores, resolves duplicates,
 // rejects ids that the layout does not name, and writes the images in order and in batches. The
 // steps that need all frames follow (import_completion.h). Frames whose name is in the database
@@ -93,6 +94,6 @@ struct ImportReport {
 // write. If no markers are found, throws DataError that names the dictionaries and polarity that
 // would have found some. If an import with import_anew fails, the earlier one stays as it is.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
-                           const ProgressCallback& progress = {});
+                           const ImportProgress& progress = {});
 
 }  // namespace velamap

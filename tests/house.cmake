@@ -4,7 +4,7 @@
 
 house_folder(importer/base PUBLIC
   atomic_output bounded_queue error file_lock files ids log natural_order numbers option parallel
-  replacement stage_timer statistics)
+  progress_callback replacement stage_timer statistics)
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC

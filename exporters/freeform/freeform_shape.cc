@@ -11,6 +11,7 @@
 #include "exporters/surface/surface_attempt.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "importer/text/csv.h"
 
 namespace velamap {
@@ -64,9 +65,14 @@ void WriteResiduals(const FreeformShape& freeform, std::ostream& out) {
 std::string ShownName(const std::string& part) { return part.empty() ? "all markers" : part; }
 
 std::string SizeText(const FreeformSurface& surface) {
-  const std::string area = fmt::format("{:.4g} m2", surface.area_m2);
-  if (!surface.volume_m3) return area;
-  return fmt::format("{}, closed, {:.4g} m3", area, *surface.volume_m3);
+  constexpr double kSmall_m2 = 0.1, kMm2PerM2 = kMmPerM * kMmPerM;
+  const bool is_small = surface.area_m2 < kSmall_m2;
+  std::string text = is_small ? fmt::format("{:.0f} mm2", kMm2PerM2 * surface.area_m2)
+                              : fmt::format("{:.4g} m2", surface.area_m2);
+  if (!surface.volume_m3) return text;
+  text += is_small ? fmt::format(", closed, {:.0f} mm3", kMm2PerM2 * kMmPerM * *surface.volume_m3)
+                   : fmt::format(", closed, {:.4g} m3", *surface.volume_m3);
+  return text;
 }
 
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,

@@ -35,7 +35,7 @@ struct FreeformShape {
 // The name of the part for messages. For a layout without parts it is "all markers".
 std::string ShownName(const std::string& part);
 
-// "0.3139 m2", or "0.3139 m2, closed, 0.0214 m3".
+// "0.3139 m2", or "0.3139 m2, closed, 0.0214 m3"; below 0.1 m2 in mm.
 std::string SizeText(const FreeformSurface& surface);
 
 // Fits the parts that have no horizontal lines and name at least kMinFreeformMarkers markers, on

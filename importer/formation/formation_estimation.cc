@@ -22,7 +22,7 @@ constexpr double kQuietZoneSigma = 0.25;
 // least noise; none if no fit succeeds. From a camera that hardly sharpens, the minimum of one that
 // sharpens much is not reached where white is clipped.
 State BestStart(const std::vector<FormationSample>& samples, const FormationPriors& priors,
-                const ImageFormationParameters& formation, int num_threads) {
+                const ImageFormationParameters& formation, const FitWorkers& workers) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2}, kSharpenings[] = {0.1, 0.8};
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
@@ -31,7 +31,7 @@ State BestStart(const std::vector<FormationSample>& samples, const FormationPrio
       FormationVector start = priors.mean;
       start[kLogGamma] = std::log(gamma);
       start[kSharpening] = sharpening;
-      State state = FitSamples(samples, start, formation, num_threads);
+      State state = FitSamples(samples, start, formation, workers);
       const double noise = NoiseOf(state);
       if (noise < least_noise) {
         least_noise = noise;
@@ -52,32 +52,32 @@ std::vector<FormationSample> SomeOf(const std::vector<FormationSample>& all) {
   return some;
 }
 
-void Minimize(const FormationPriors& priors, int max_iterations, int num_threads, State* state) {
+void Minimize(const FormationPriors& priors, int max_iterations, const FitWorkers& workers,
+              State* state) {
   LeastSquaresOptions options;
   options.max_iterations = max_iterations;
   options.initial_damping = 1e-3;
   options.max_damping = 1e2;
   options.min_relative_decrease = 2e-4;
-  *state = WithPooledQuietZone(std::move(*state), num_threads);
+  *state = WithPooledQuietZone(std::move(*state), workers);
   FormationProblem::Equations equations;
-  MinimizeSquares(options, FormationProblem(priors, NoisesOf(*state), num_threads), state,
-                  &equations);
+  MinimizeSquares(options, FormationProblem(priors, NoisesOf(*state), workers), state, &equations);
 }
 
 // Minimizes without the pixels at the corners of outlines first, then with the weight that their
 // residuals ask for.
 State Minimized(const std::vector<FormationSample>& samples, const FormationPriors& priors,
-                bool is_inverted, int num_threads) {
+                bool is_inverted, const FitWorkers& workers) {
   constexpr int kMaxIterations = 6;
   ImageFormationParameters formation;
   formation.is_inverted = is_inverted;
   formation.quiet_zone_sigma_cells = kQuietZoneSigma;
   formation.outline_corner_weight = 0.0;
-  State state = BestStart(samples, priors, formation, num_threads);
+  State state = BestStart(samples, priors, formation, workers);
   if (state.samples.empty()) return state;
-  Minimize(priors, kMaxIterations, num_threads, &state);
-  state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
-  Minimize(priors, kMaxIterations, num_threads, &state);
+  Minimize(priors, kMaxIterations, workers, &state);
+  state = WithOutlineCorners(OutlineCornerWeight(state), state, workers);
+  Minimize(priors, kMaxIterations, workers, &state);
   return state;
 }
 
@@ -111,7 +111,7 @@ FormationEstimate Unknown() {
 }  // namespace
 
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
-                                    int num_threads) {
+                                    const FitWorkers& workers) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   constexpr int kFewIterations = 2;
   if (samples.size() < kMinFormationSamples) return Unknown();
@@ -119,18 +119,18 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   const FormationPriors priors = PriorsFor(samples);
   State likely;
   for (const std::vector<FormationSample>& some : {SomeOf(samples), samples}) {
-    likely = Minimized(some, priors, is_inverted, num_threads);
+    likely = Minimized(some, priors, is_inverted, workers);
     if (!likely.samples.empty()) break;
   }
   if (likely.samples.empty()) return Unknown();
   FormationVector start = priors.mean;
   start[kLogGamma] = likely.parameters[kLogGamma];
-  State winner = FitSamples(samples, start, likely.formation->parameters(), num_threads);
+  State winner = FitSamples(samples, start, likely.formation->parameters(), workers);
   if (winner.samples.size() < kMinFormationSamples) return Unknown();
-  winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, num_threads);
-  Minimize(priors, kFewIterations, num_threads, &winner);
-  const BalancedEdges balanced = WithBalancedEdges(winner, num_threads);
-  const BalancedEdges outlines = WithBalancedOutlines(balanced.state, num_threads);
+  winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, workers);
+  Minimize(priors, kFewIterations, workers, &winner);
+  const BalancedEdges balanced = WithBalancedEdges(winner, workers);
+  const BalancedEdges outlines = WithBalancedOutlines(balanced.state, workers);
   const State& best = outlines.state;
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
@@ -139,7 +139,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
   const double by_model_px = InsetSigmaByModel(winner, balanced.state);
-  const FormationProblem problem(priors, NoisesOf(winner), num_threads);
+  const FormationProblem problem(priors, NoisesOf(winner), workers);
   const double by_parameters_px = problem.InsetSigma(winner);
   LogDebug(
       "1 sigma of the inset by parameters {:.4f} px, the model {:.4f} px, inner edges {:.4f} px, "

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "importer/formation/fit_workers.h"
 #include "importer/formation/fitted_sample.h"
 #include "importer/pattern/formation_estimate.h"
 
@@ -20,10 +21,10 @@ constexpr std::size_t kMinFormationSamples = 2;
 // gammas and amounts of sharpening; then all samples take a few steps. The shifts of edges and of
 // outlines then follow the places of inner edges (balanced_edges.h), and pixels at the corners of
 // outlines get the weight that their residuals ask for. `is_inverted`: the samples hold 255 minus
-// the recorded grey values. The number of threads (0: one per core) does not change the result. If
-// fewer than kMinFormationSamples can be fitted, the parameters are the defaults, with the inset
-// that an unknown camera may cause.
+// the recorded grey values. The number of threads does not change the result. If fewer than
+// kMinFormationSamples can be fitted, the parameters are the defaults, with the inset that an
+// unknown camera may cause.
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
-                                    int num_threads = 1);
+                                    const FitWorkers& workers = {});
 
 }  // namespace velamap

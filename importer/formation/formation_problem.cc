@@ -23,13 +23,13 @@ constexpr double kPixelsAlike = 10.0;
 const FormationVector kStep =
     (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02, 0.01, 0.1).finished();
 
-const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
+const std::vector<State>& MovedBySteps(const State& state, const FitWorkers& workers) {
   if (!state.moved) {
     std::vector<State> moved;
     for (int k = 0; k < kCount; ++k) {
       FormationVector parameters = state.parameters;
       parameters[k] += kStep[k];
-      moved.push_back(MovedTo(parameters, state, num_threads));
+      moved.push_back(MovedTo(parameters, state, workers));
     }
     state.moved = std::make_shared<const std::vector<State>>(std::move(moved));
   }
@@ -98,8 +98,8 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
 }
 
 FormationProblem::FormationProblem(const FormationPriors& priors, std::vector<double> noises,
-                                   int num_threads)
-    : priors_(priors), noises_(std::move(noises)), num_threads_(num_threads) {}
+                                   const FitWorkers& workers)
+    : priors_(priors), noises_(std::move(noises)), workers_(workers) {}
 
 void FormationProblem::Evaluate(const State& state, bool, Equations* equations) const {
   *equations = SumUp(state, false);
@@ -110,13 +110,13 @@ void FormationProblem::Evaluate(const State& state, bool, Equations* equations) 
 
 State FormationProblem::Plus(const State& state, const Step& step) const {
   return MovedTo((state.parameters + step).cwiseMax(priors_.min).cwiseMin(priors_.max), state,
-                 num_threads_);
+                 workers_);
 }
 
 double FormationProblem::Cost(const State& state) const { return SumUp(state, false).cost(); }
 
 double FormationProblem::InsetSigma(const State& state) const {
-  const std::vector<State>& moved = MovedBySteps(state, num_threads_);
+  const std::vector<State>& moved = MovedBySteps(state, workers_);
   FormationVector inset_by;
   for (int k = 0; k < kCount; ++k) {
     inset_by[k] = MeanInset(state, moved[static_cast<std::size_t>(k)]) / kStep[k];
@@ -156,9 +156,8 @@ void FormationProblem::AddSample(const State& state, bool with_derivatives, std:
   constexpr double kFailed = 1.5;  // sigmas
   const std::vector<float>& residuals = state.samples[i].residuals;
   const auto count = static_cast<Eigen::Index>(state.samples[i].places.size());
-  const Jacobian jacobian = with_derivatives
-                                ? JacobianOf(state, MovedBySteps(state, num_threads_), i)
-                                : Jacobian(Jacobian::Zero(count, kCount));
+  const Jacobian jacobian = with_derivatives ? JacobianOf(state, MovedBySteps(state, workers_), i)
+                                             : Jacobian(Jacobian::Zero(count, kCount));
   for (Eigen::Index j = 0; j < count; ++j) {
     const double weight = RootWeight(state, i, j);
     const double residual =

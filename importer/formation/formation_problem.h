@@ -28,7 +28,8 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
   using Parameters = FormationState;
 
   // `noises`: grey levels; infinite for samples that do not count. The priors must outlive this.
-  FormationProblem(const FormationPriors& priors, std::vector<double> noises, int num_threads);
+  FormationProblem(const FormationPriors& priors, std::vector<double> noises,
+                   const FitWorkers& workers);
 
   // Derivatives take eight fits of every sample. They are not computed where the cost is higher
   // than before, because such a step is rejected.
@@ -58,7 +59,7 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
 
   const FormationPriors& priors_;
   std::vector<double> noises_;  // of the samples
-  int num_threads_;
+  const FitWorkers& workers_;
   CauchyLoss loss_{9.0};
   mutable double least_cost_ = std::numeric_limits<double>::infinity();
 };

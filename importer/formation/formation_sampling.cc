@@ -1,6 +1,8 @@
 #include "importer/formation/formation_sampling.h"
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -19,6 +21,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMinSidePx = 12.0;
+constexpr int kUsualFits = 60;        // of each sample; the estimates of ten clips took 40 to 70
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
 // The number of samples per frame. Each small marker contributes less information and takes less
@@ -107,24 +110,41 @@ std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv:
   return samples;
 }
 
+// Where samples come from.
+struct SampledSource {
+  const FrameDetector& detector;
+  int num_threads;
+  const ProgressCallback& progress;  // of the frames
+  FrameSource* frames;
+};
+
+// Calls `progress` with one more of `total` at each call, from any thread.
+std::function<void()> Counter(const ProgressCallback& progress, int total) {
+  if (!progress) return {};
+  progress(0, total, "");
+  const auto count = std::make_shared<std::atomic<int>>(0);
+  return [=] { progress(++*count, total, ""); };
+}
+
 // Reads `num_frames` frames, every `stride`-th, and cuts samples from them. False at the end.
-bool SampleFrames(const FrameDetector& detector, int num_frames, int stride,
-                  const SampleQuota& quota, int num_threads, FrameSource* source,
+bool SampleFrames(const SampledSource& source, int num_frames, int stride, const SampleQuota& quota,
                   std::vector<FormationSample>* samples) {
   std::vector<Frame> frames;  // without pixels
   bool has_more = true;
   for (int idx = 0; static_cast<int>(frames.size()) < num_frames && has_more; ++idx) {
-    std::optional<Frame> frame = source->Next();
+    std::optional<Frame> frame = source.frames->Next();
     has_more = frame.has_value();
     if (has_more && idx % stride == 0) frames.push_back(std::move(*frame));
   }
   std::vector<std::vector<FormationSample>> samples_of(frames.size());
-  ParallelFor(frames.size(), num_threads, [&](std::size_t i) {
+  const std::function<void()> count = Counter(source.progress, static_cast<int>(frames.size()));
+  ParallelFor(frames.size(), source.num_threads, [&](std::size_t i) {
     Frame frame = std::move(frames[i]);
     std::string reason;
-    if (source->Load(&frame, &reason)) {
-      samples_of[i] = CutSamples(detector, frame.gray, quota);
+    if (source.frames->Load(&frame, &reason)) {
+      samples_of[i] = CutSamples(source.detector, frame.gray, quota);
     }
+    if (count) count();
   });
   for (std::vector<FormationSample>& some : samples_of) {
     std::move(some.begin(), some.end(), std::back_inserter(*samples));
@@ -135,17 +155,15 @@ bool SampleFrames(const FrameDetector& detector, int num_frames, int stride,
 // From the beginning of a video; later frames, farther apart, are added while too few markers are
 // found, to the end of the video while hardly any are. In a short video the frames are closer
 // together.
-std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_threads,
-                                         FrameSource* source) {
+std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
-  const int num_in_video = source->NumFrames();  // 0: unknown
+  const int num_in_video = source.frames->NumFrames();  // 0: unknown
   const int first_stride =
       num_in_video == 0 ? kStride : std::clamp(num_in_video / kNumFrames, 1, kStride);
   std::vector<FormationSample> samples;
   bool has_more = true;
   for (int stride = first_stride; has_more; stride = std::min(2 * stride, kMaxStride)) {
-    has_more = SampleFrames(detector, kNumFrames, stride, QuotaOfFrame(kNumFrames), num_threads,
-                            source, &samples);
+    has_more = SampleFrames(source, kNumFrames, stride, QuotaOfFrame(kNumFrames), &samples);
     const std::size_t num_enough =
         stride == kMaxStride ? kMinFormationSamples : kQuota.num_large / 2;
     if (samples.size() >= num_enough) break;
@@ -154,14 +172,13 @@ std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_
 }
 
 // Up to 32 photographs are all used; of more, every k-th in the order of their names.
-std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, int num_threads,
-                                               FrameSource* source) {
+std::vector<FormationSample> SamplePhotographs(const SampledSource& source) {
   constexpr int kMaxFrames = 32;
-  const int num_images = std::max(1, source->NumFrames());
+  const int num_images = std::max(1, source.frames->NumFrames());
   const int stride = (num_images + kMaxFrames - 1) / kMaxFrames;
   std::vector<FormationSample> samples;
-  SampleFrames(detector, kMaxFrames, stride, QuotaOfFrame(std::min(num_images, kMaxFrames)),
-               num_threads, source, &samples);
+  SampleFrames(source, kMaxFrames, stride, QuotaOfFrame(std::min(num_images, kMaxFrames)),
+               &samples);
   return samples;
 }
 
@@ -169,13 +186,14 @@ std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, in
 
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
-                                            const FrameDetector& detector) {
+                                            const FrameDetector& detector,
+                                            const ProgressCallback& progress) {
   // May take longer than the detection in a few photographs.
   LogInfo("looking for markers that show what camera and print do to edges");
-  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video, {}, num_threads);
+  const std::unique_ptr<FrameSource> frames = OpenFrameSource(image_path, video, {}, num_threads);
+  const SampledSource source{detector, num_threads, progress, frames.get()};
   std::vector<FormationSample> samples =
-      source->IsVideo() ? SampleVideo(detector, num_threads, source.get())
-                        : SamplePhotographs(detector, num_threads, source.get());
+      frames->IsVideo() ? SampleVideo(source) : SamplePhotographs(source);
   // Sums in single precision depend on their order, which the names of photographs decide.
   const auto key = [](const FormationSample& sample) {
     return std::make_pair(cv::sum(sample.gray)[0], sample.corners_px[0].sum());
@@ -185,8 +203,9 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   if (samples.size() >= kMinFormationSamples) {
     LogInfo("estimating how camera and print change the edges of {} markers", samples.size());
   }
-  const FormationEstimate estimate =
-      EstimateFormation(samples, detector.options.inverted, num_threads);
+  const FormationEstimate estimate = EstimateFormation(
+      samples, detector.options.inverted,
+      {num_threads, Counter(progress, kUsualFits * static_cast<int>(samples.size()))});
   if (estimate.num_samples == 0) {
     LogWarning(
         "{}: too few markers are large and sharp enough to show what the camera does to edges; its "

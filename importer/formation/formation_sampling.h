@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "importer/base/progress_callback.h"
 #include "importer/formation/formation_estimation.h"
 #include "importer/track/frame_detector.h"
 #include "importer/video/video_options.h"
@@ -13,9 +14,11 @@ namespace velamap {
 // Estimates the image formation from about 32 markers: of up to 32 photographs of the folder, or of
 // every fifth frame at the beginning of a video, and of later ones while too few markers are found.
 // The video is read again for the import. The parameters are the defaults, with the inset that an
-// unknown camera may cause, if fewer than two markers can be fitted.
+// unknown camera may cause, if fewer than two markers can be fitted. `progress` is called from any
+// thread: with the frames, and then with the fits of markers, whose number is only estimated.
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
-                                            const FrameDetector& detector);
+                                            const FrameDetector& detector,
+                                            const ProgressCallback& progress = {});
 
 }  // namespace velamap

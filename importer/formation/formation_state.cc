@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -36,6 +37,14 @@ double NoiseOf(const FormationState& state, bool at_outline_corners) {
   return NoiseOf(residuals);
 }
 
+void FitAll(std::size_t count, const FitWorkers& workers,
+            const std::function<void(std::size_t)>& fit) {
+  ParallelFor(count, workers.num_threads, [&](std::size_t i) {
+    fit(i);
+    if (workers.on_fit) workers.on_fit();
+  });
+}
+
 // `formation` with the parameters of the vector.
 ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
   formation.gamma = std::exp(p[kLogGamma]);
@@ -52,12 +61,12 @@ ImageFormationParameters With(const FormationVector& p, ImageFormationParameters
 }  // namespace
 
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
-                          const ImageFormationParameters& formation, int num_threads) {
+                          const ImageFormationParameters& formation, const FitWorkers& workers) {
   FormationState state;
   state.parameters = start;
   state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
   std::vector<std::optional<FittedSample>> fitted(samples.size());
-  ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
+  FitAll(samples.size(), workers, [&](std::size_t i) {
     fitted[i] = FitSample(samples[i], *state.formation);
     if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
   });
@@ -69,19 +78,18 @@ FormationState FitSamples(const std::vector<FormationSample>& samples, const For
 
 FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
-                          int num_threads) {
+                          const FitWorkers& workers) {
   FormationState moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
                        nullptr};
-  ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
+  FitAll(moved.samples.size(), workers, [&](std::size_t i) {
     RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
   return moved;
 }
 
 FormationState MovedTo(const FormationVector& parameters, const FormationState& state,
-                       int num_threads) {
-  return FittedWith(With(parameters, state.formation->parameters()), parameters, state,
-                    num_threads);
+                       const FitWorkers& workers) {
+  return FittedWith(With(parameters, state.formation->parameters()), parameters, state, workers);
 }
 
 std::vector<double> QuietZones(const FormationState& state) {
@@ -93,7 +101,7 @@ std::vector<double> QuietZones(const FormationState& state) {
   return widths;
 }
 
-FormationState WithPooledQuietZone(FormationState state, int num_threads) {
+FormationState WithPooledQuietZone(FormationState state, const FitWorkers& workers) {
   constexpr int kMaxIterations = 5;
   constexpr double kTolerance = 0.01;  // cells
   for (int i = 0; i < kMaxIterations; ++i) {
@@ -101,7 +109,7 @@ FormationState WithPooledQuietZone(FormationState state, int num_threads) {
     const double before = formation.quiet_zone_cells;
     formation.quiet_zone_cells = Median(QuietZones(state));
     if (std::abs(formation.quiet_zone_cells - before) < kTolerance) break;
-    state = FittedWith(formation, state.parameters, state, num_threads);
+    state = FittedWith(formation, state.parameters, state, workers);
   }
   return state;
 }
@@ -123,10 +131,11 @@ double OutlineCornerWeight(const FormationState& state) {
   return 1 / std::max(1.0, relative_noise * relative_noise);
 }
 
-FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads) {
+FormationState WithOutlineCorners(double weight, const FormationState& state,
+                                  const FitWorkers& workers) {
   ImageFormationParameters formation = state.formation->parameters();
   formation.outline_corner_weight = weight;
-  return FittedWith(formation, state.parameters, state, num_threads);
+  return FittedWith(formation, state.parameters, state, workers);
 }
 
 bool AreAlike(const FittedSample& one, const FittedSample& other) {

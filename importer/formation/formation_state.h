@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "importer/formation/fit_workers.h"
 #include "importer/formation/fitted_sample.h"
 
 namespace velamap {
@@ -40,23 +41,23 @@ struct FormationState {
 // The samples fitted with `formation`, which gets the parameters `start`. Samples that cannot
 // be fitted are left out.
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
-                          const ImageFormationParameters& formation, int num_threads);
+                          const ImageFormationParameters& formation, const FitWorkers& workers);
 
 // The same samples fitted with another image formation, which has these `parameters`.
 FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
-                          int num_threads);
+                          const FitWorkers& workers);
 
 // The same samples fitted with other parameters of the vector.
 FormationState MovedTo(const FormationVector& parameters, const FormationState& state,
-                       int num_threads);
+                       const FitWorkers& workers);
 
 // Widths of the quiet zones of all samples, cells.
 std::vector<double> QuietZones(const FormationState& state);
 
 // All samples together determine the width of the quiet zone where each alone is too small to do
 // so: the prior moves to the median until it no longer changes.
-FormationState WithPooledQuietZone(FormationState state, int num_threads);
+FormationState WithPooledQuietZone(FormationState state, const FitWorkers& workers);
 
 // Robust standard deviation of the residuals at straight edges and within cells, grey levels;
 // infinite without any.
@@ -69,7 +70,8 @@ std::vector<double> NoisesOf(const FormationState& state);
 // residuals of the others.
 double OutlineCornerWeight(const FormationState& state);
 
-FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads);
+FormationState WithOutlineCorners(double weight, const FormationState& state,
+                                  const FitWorkers& workers);
 
 // Whether a sample has been fitted in both states, and found about the same corners: a fit can jump
 // to another minimum, whose difference from the first is no derivative.

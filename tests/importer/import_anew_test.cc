@@ -82,11 +82,10 @@ TEST_F(ImportAnewTest, ThatFailsLeavesTheEarlierImport) {
   ExpectThrows<DataError>([&] { ImportMarkers(options_); }, {"empty.avi", "no marker"});
   EXPECT_TRUE(Result() == earlier);
   WriteVideo("other.avi", 4, {1, 3});
-  EXPECT_THROW(ImportMarkers(options_,
-                             [](int done, int, const std::string&) {
-                               if (done == 3) throw std::bad_alloc();
-                             }),
-               std::bad_alloc);
+  const auto fail = [](int done, int, const std::string&) {
+    if (done == 3) throw std::bad_alloc();
+  };
+  EXPECT_THROW(ImportMarkers(options_, {{}, fail}), std::bad_alloc);
   EXPECT_TRUE(Result() == earlier);
 }
 

@@ -2,6 +2,8 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,11 +22,24 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
   WritePicture("10.png", 1, {2, 3});
   WritePicture("11.png", 2, {});
   std::vector<int> done;
-  const ImportReport report = ImportMarkers(options_, [&](int n, int total, const std::string&) {
+  const auto count = [&](int n, int total, const std::string&) {
     done.push_back(n);
     EXPECT_EQ(total, 3);
-  });
+  };
+  std::mutex mutex;
+  std::map<int, int> calls_by_total;
+  const auto count_formation = [&](int, int total, const std::string&) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    ++calls_by_total[total];
+  };
+  const ImportReport report = ImportMarkers(options_, {count_formation, count});
   EXPECT_THAT(done, ElementsAre(0, 1, 2, 3));
+  // The estimate of camera and print looks at all pictures, and then fits some of their markers.
+  ASSERT_EQ(calls_by_total.size(), 2u);
+  EXPECT_EQ(calls_by_total[3], 4);
+  const auto [num_expected, num_calls] = *calls_by_total.rbegin();
+  EXPECT_GT(num_calls, num_expected / 4);
+  EXPECT_LT(num_calls, 4 * num_expected);
   EXPECT_EQ(report.num_frames_read, 3);
   EXPECT_EQ(report.num_images_added, 3);
   EXPECT_EQ(report.num_images_present, 0);

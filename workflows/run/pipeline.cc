@@ -104,10 +104,13 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
 }
 
 ImportReport ImportWithProgress(const MarkerImporterOptions& options, const std::string& what) {
-  Progress progress(what);
-  return ImportMarkers(options, [&progress](int done, int total, const std::string& message) {
-    progress.Update(done, total, message);
-  });
+  Progress formation("estimating camera and print"), frames(what);
+  const auto shown_by = [](Progress& progress) {
+    return [&progress](int done, int total, const std::string& message) {
+      progress.Update(done, total, message);
+    };
+  };
+  return ImportMarkers(options, {shown_by(formation), shown_by(frames)});
 }
 
 ImportReport ImportImages(const MarkerImporterOptions& options) {

@@ -1,6 +1,7 @@
 #include "workflows/run/run_summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <string>
 
@@ -77,13 +78,17 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
   if (!left_out.empty()) WriteFormatted(out, "images left out: {}\n", LeftOutText(left_out));
 }
 
+// Rounded, so that little below zero is not printed as -0.0.
+double ToTenths(double value) { return std::round(10 * value) / 10 + 0.0; }
+
 void PrintSections(const SectionReport& report, std::ostream& out) {
   for (const Section& section : report.sections) {
     WriteFormatted(out, "section {} {} at {:.2f} m: camber {:.1f} %", section.part, section.name,
-                   section.height_m, 100.0 * section.camber.value);
+                   section.height_m, ToTenths(100.0 * section.camber.value));
     if (section.draft_position)
       WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
-    if (section.twist_deg) WriteFormatted(out, ", twist {:.1f} deg", section.twist_deg->value);
+    if (section.twist_deg)
+      WriteFormatted(out, ", twist {:.1f} deg", ToTenths(section.twist_deg->value));
     const std::string missing = MissingEndsText(section);
     if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);
     out << '\n';

@@ -290,5 +290,16 @@ TEST(FreeformShape, ALayoutWithoutPartsIsOneSurface) {
   EXPECT_THROW(std::rethrow_exception(refused.surface_error), InputError);
 }
 
+TEST(Freeform, SizesAreInUnitsThatSuitThem) {
+  FreeformSurface surface;
+  surface.area_m2 = 0.31389;
+  EXPECT_EQ(SizeText(surface), "0.3139 m2");
+  surface.volume_m3 = 0.02141;
+  EXPECT_EQ(SizeText(surface), "0.3139 m2, closed, 0.02141 m3");
+  surface.area_m2 = 0.0384;
+  surface.volume_m3 = 512e-6;
+  EXPECT_EQ(SizeText(surface), "38400 mm2, closed, 512000 mm3");
+}
+
 }  // namespace
 }  // namespace velamap
