@@ -1,6 +1,7 @@
 // The estimate from pictures that noise filters, compression or curves of another shape have
 // changed, none of which a parameter describes.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -93,6 +94,38 @@ TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
                    std::to_string(bias_px) + " " + std::to_string(as_ink_px));
   }
   EXPECT_LT(sum_px, 0.4 * sum_as_ink_px);
+}
+
+// Curves of HDR video and of film-like rendering leave the contrast of dark and light so small that
+// no power within the limits has their shape.
+TEST(FormationEstimation, CurvesOfHdrVideoAndFilmDoNotMoveSides) {
+  const auto hybrid_log_gamma = [](double light) {  // ITU-R BT.2100, paper at a third of its range
+    const double x = 0.35 * light;
+    return x < 1.0 / 12 ? std::sqrt(3 * x)
+                        : 0.17883277 * std::log(12 * x - 0.28466892) + 0.55991073;
+  };
+  const auto film = [](double light) {  // a sigmoid over 16.5 stops
+    const double stops = std::log2(std::max(light, 1e-4) / 0.18);
+    return 1 / (1 + std::exp(-9.5 * ((stops + 10) / 16.5 - 0.606)));
+  };
+  std::mt19937 random(TestSeed());
+  for (double (*encode)(double) : {+hybrid_log_gamma, +film}) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = 36;
+    scene.rendering.camera = {};
+    MarkerGrid grid = MakeMarkerGrid(scene);
+    cv::Mat curve(1, 256, CV_8U);
+    for (int i = 0; i < 256; ++i) {
+      curve.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(255 * encode(i / 255.0));
+    }
+    cv::LUT(grid.image, curve, grid.image);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
+    EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px);  // two corners a side
+    EXPECT_LT(std::abs(bias_px), 0.02);
+    EXPECT_LT(estimate.inset_sigma_px, 0.04);
+    RecordProperty("bias_px", std::to_string(bias_px));
+  }
 }
 
 // A median takes a narrow quiet zone for noise and moves the outline of the black square, which no
