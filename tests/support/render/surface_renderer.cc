@@ -1,7 +1,10 @@
 #include "tests/support/render/surface_renderer.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -13,6 +16,16 @@
 
 namespace velamap {
 namespace {
+
+// Every frame needs the same pictures of up to hundreds of MB. New pages for them would take more
+// than half of the time, so freed memory is kept, in one arena for all threads.
+const struct FreedMemoryIsKept {
+  FreedMemoryIsKept() {
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  }
+} freed_memory_is_kept;
 
 constexpr double kFullLight = 255.0;
 
