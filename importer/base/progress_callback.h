@@ -1,4 +1,4 @@
-// How long steps tell those who wait how far they are.
+// How a long step tells how far it is.
 
 #pragma once
 

@@ -21,7 +21,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMinSidePx = 12.0;
-constexpr int kUsualFits = 60;        // of each sample; the estimates of ten clips took 40 to 70
+constexpr int kUsualFits = 60;        // of each sample; nine inputs took 40 to 70
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
 // The number of samples per frame. Each small marker contributes less information and takes less

@@ -63,7 +63,10 @@ Progress::~Progress() { ClearProgressLine(); }
 void Progress::Update(int done, int total, const std::string& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (done == 0) start_ = last_shown_ = now;
+  if (done == 0) {
+    start_ = last_shown_ = now;
+    last_percent_ = 0;
+  }
   const double elapsed_s = Seconds(now - start_);
   const double since_last_s = Seconds(now - last_shown_);
   if (elapsed_s < kQuietSeconds) return;

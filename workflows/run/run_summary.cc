@@ -87,8 +87,9 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
                    section.height_m, ToTenths(100.0 * section.camber.value));
     if (section.draft_position)
       WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
-    if (section.twist_deg)
+    if (section.twist_deg) {
       WriteFormatted(out, ", twist {:.1f} deg", ToTenths(section.twist_deg->value));
+    }
     const std::string missing = MissingEndsText(section);
     if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);
     out << '\n';
