@@ -13,6 +13,7 @@
 #include "exporters/sail/section_writer.h"
 #include "importer/geometry/units.h"
 #include "importer/text/markup.h"
+#include "importer/text/number_text.h"
 
 namespace velamap {
 namespace {
@@ -29,15 +30,8 @@ void WriteText(double x, double y, const std::string& style, const std::string& 
                      EscapeForMarkup(text));
 }
 
-// `value ± sigma`, or only the value if it has no sigma. Both have more digits where the sigma
-// would be rounded to zero.
 std::string WithSigma(const Estimate& estimate, double factor, int digits) {
-  constexpr int kMaxDigits = 4;
-  const double value = factor * estimate.value;
-  if (!estimate.sigma) return fmt::format("{:.{}f}", value, digits);
-  const double sigma = factor * *estimate.sigma;
-  while (sigma > 0 && sigma < 0.5 * std::pow(10.0, -digits) && digits < kMaxDigits) ++digits;
-  return fmt::format("{:.{}f} ± {:.{}f}", value, digits, sigma, digits);
+  return UncertainText(estimate.value, estimate.sigma, factor, digits, "±");
 }
 
 std::string TwistText(const std::optional<Estimate>& twist_deg) {

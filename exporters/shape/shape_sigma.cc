@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -106,6 +109,12 @@ std::map<int, double> CenterSigmas_mm(const PointCovariance& covariance) {
     if (sigma_m) sigmas_mm[marker_id] = kMmPerM * sigma_m->norm();
   }
   return sigmas_mm;
+}
+
+double MedianSigma(const std::map<int, double>& sigma_by_marker) {
+  std::vector<double> sigmas;
+  for (const auto& [marker_id, sigma] : sigma_by_marker) sigmas.push_back(sigma);
+  return Median(std::move(sigmas));
 }
 
 }  // namespace velamap

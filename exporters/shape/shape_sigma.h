@@ -52,4 +52,7 @@ std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covari
 // four corners are known, mm; by marker id.
 std::map<int, double> CenterSigmas_mm(const PointCovariance& covariance);
 
+// The median over the markers, of which there must be one at least.
+double MedianSigma(const std::map<int, double>& sigma_by_marker);
+
 }  // namespace velamap

@@ -11,7 +11,6 @@
 
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
-#include "importer/base/statistics.h"
 #include "importer/database/colmap_database.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/adjust/marker_adjustment.h"
@@ -55,13 +54,10 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
       adjustment_options, layout, CornerErrorsOf(images, database.ReadFormation()), &model);
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
-  std::vector<double> sigmas_mm;
-  for (const auto& [marker_id, sigma_mm] : CenterSigmas_mm(summary.uncertainty.points)) {
-    sigmas_mm.push_back(sigma_mm);
-  }
+  const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.uncertainty.points);
   if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
   precision.num_markers = static_cast<int>(sigmas_mm.size());
-  precision.marker_sigma_mm = Median(sigmas_mm);
+  precision.marker_sigma_mm = MedianSigma(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
   precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));

@@ -8,7 +8,6 @@
 #include "exporters/shape/shape_metrics.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
-#include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 
@@ -67,11 +66,7 @@ class Clip {
 
 }  // namespace
 
-double PlanPrecision::MedianMarkerSigma_mm() const {
-  std::vector<double> sigmas_mm;
-  for (const auto& [marker_id, sigma_mm] : marker_sigma_mm) sigmas_mm.push_back(sigma_mm);
-  return Median(std::move(sigmas_mm));
-}
+double PlanPrecision::MedianMarkerSigma_mm() const { return MedianSigma(marker_sigma_mm); }
 
 PlanPrecision SimulatePlan(const PlannedSurface& surface, const Camera& camera,
                            const PlannedPath& path, const ShootPlanOptions& options) {

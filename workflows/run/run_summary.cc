@@ -1,7 +1,7 @@
 #include "workflows/run/run_summary.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <ostream>
 #include <string>
 
@@ -11,8 +11,8 @@
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/shape_report.h"
-#include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
+#include "importer/text/number_text.h"
 #include "importer/text/write_formatted.h"
 #include "workflows/run/summary.h"
 
@@ -47,12 +47,9 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   WriteFormatted(out, "markers: {}", metrics.NumWholeOfLayout());
   if (metrics.num_layout_markers) WriteFormatted(out, " of {}", *metrics.num_layout_markers);
   if (summary.shape.uncertainty) {
-    std::vector<double> sigmas_mm;
-    for (const auto& [marker_id, sigma_mm] : CenterSigmas_mm(summary.shape.uncertainty->points)) {
-      sigmas_mm.push_back(sigma_mm);
-    }
+    const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.shape.uncertainty->points);
     if (!sigmas_mm.empty()) {
-      WriteFormatted(out, ", known to {:.2g} mm (1 sigma, median)", Median(std::move(sigmas_mm)));
+      WriteFormatted(out, ", known to {:.2g} mm (1 sigma, median)", MedianSigma(sigmas_mm));
     }
   }
   out << '\n';
@@ -78,17 +75,14 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
   if (!left_out.empty()) WriteFormatted(out, "images left out: {}\n", LeftOutText(left_out));
 }
 
-// Rounded, so that little below zero is not printed as -0.0.
-double ToTenths(double value) { return std::round(10 * value) / 10 + 0.0; }
-
 void PrintSections(const SectionReport& report, std::ostream& out) {
   for (const Section& section : report.sections) {
-    WriteFormatted(out, "section {} {} at {:.2f} m: camber {:.1f} %", section.part, section.name,
-                   section.height_m, ToTenths(100.0 * section.camber.value));
+    WriteFormatted(out, "section {} {} at {:.2f} m: camber {} %", section.part, section.name,
+                   section.height_m, FixedText(100.0 * section.camber.value, 1));
     if (section.draft_position)
       WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
     if (section.twist_deg) {
-      WriteFormatted(out, ", twist {:.1f} deg", ToTenths(section.twist_deg->value));
+      WriteFormatted(out, ", twist {} deg", FixedText(section.twist_deg->value, 1));
     }
     const std::string missing = MissingEndsText(section);
     if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);

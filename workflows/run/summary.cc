@@ -14,6 +14,7 @@
 #include "importer/base/log.h"
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
+#include "importer/text/number_text.h"
 #include "importer/text/write_formatted.h"
 
 namespace velamap {
@@ -65,19 +66,13 @@ std::string RangeText(const std::vector<Section>& sections,
     low = std::min(low, *of_section);
     high = std::max(high, *of_section);
   }
-  return low > high ? "" : fmt::format("{:.1f} to {:.1f}", low, high);
-}
-
-// `31.2 +- 1.1`, or without a sigma `31.2`.
-std::string WithSigma(double value, double factor, const Estimate& estimate) {
-  if (!estimate.sigma) return fmt::format("{:.1f}", value);
-  return fmt::format("{:.1f} +- {:.1f}", value, factor * *estimate.sigma);
+  return low > high ? "" : FixedText(low, 1) + " to " + FixedText(high, 1);
 }
 
 std::string LuffText(const Estimate& estimate_m, const char* positive, const char* negative) {
-  const double value_mm = kMmPerM * estimate_m.value;
-  return fmt::format("{} mm {}", WithSigma(std::abs(value_mm), kMmPerM, estimate_m),
-                     value_mm < 0 ? negative : positive);
+  const auto& [value_m, sigma_m] = estimate_m;
+  return fmt::format("{} mm {}", UncertainText(std::abs(value_m), sigma_m, kMmPerM, 1, "+-"),
+                     value_m < 0 ? negative : positive);
 }
 
 // Empty if no number is known.
@@ -88,8 +83,9 @@ std::string RigText(const RigNumbers& rig) {
                        LuffText(*rig.luff_sag_m, "to leeward", "to windward"));
   }
   if (rig.sheeting_angle_deg) {
+    const auto& [value_deg, sigma_deg] = *rig.sheeting_angle_deg;
     text += fmt::format("{}sheeting angle {} deg", text.empty() ? "" : ", ",
-                        WithSigma(rig.sheeting_angle_deg->value, 1.0, *rig.sheeting_angle_deg));
+                        UncertainText(value_deg, sigma_deg, 1, 1, "+-"));
   }
   return text.empty() ? text : rig.part + ", " + text;
 }

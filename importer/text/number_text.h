@@ -1,0 +1,20 @@
+// Numbers for people to read.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace velamap {
+
+// The value with `digits` decimals. Little below zero is 0.0, not -0.0.
+std::string FixedText(double value, int digits);
+
+// "31.2 +- 1.1", or only the value if it has no sigma: both times `factor`, with `sign` between
+// them. They have more decimals than `digits`, up to four, where the sigma would be rounded to
+// zero.
+std::string UncertainText(double value, const std::optional<double>& sigma, double factor,
+                          int digits, std::string_view sign);
+
+}  // namespace velamap
