@@ -18,7 +18,8 @@ std::string UncertainText(double value, const std::optional<double>& sigma, doub
   constexpr int kMaxDigits = 4;
   if (!sigma) return FixedText(factor * value, digits);
   const double shown = factor * *sigma;
-  while (shown > 0 && shown < 0.5 * std::pow(10.0, -digits) && digits < kMaxDigits) ++digits;
+  const double needed = shown > 0 ? std::ceil(std::log10(0.5 / shown)) : 0.0;
+  if (needed > digits && needed <= kMaxDigits) digits = static_cast<int>(needed);
   return fmt::format("{} {} {}", FixedText(factor * value, digits), sign, FixedText(shown, digits));
 }
 

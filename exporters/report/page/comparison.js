@@ -74,8 +74,7 @@ function describeDistances(data) {
 function distanceText(distance) {
   if (distance === null) return '–';
   if (distance.is_beside) return `beside by ${fixed(distance.beside_mm, 0)}`;
-  return signed(distance.distance_mm, 2) +
-      (distance.sigma_mm === undefined ? '' : ` ± ${fixed(distance.sigma_mm, 2)}`) +
+  return uncertain(distance.distance_mm, distance.sigma_mm, 2, signed) +
       (Math.abs(distance.significance) > 2 ? ' *' : '');
 }
 
@@ -130,9 +129,8 @@ function fillShapes(data) {
 }
 
 function differenceText(value) {
-  const digits = 2;
-  return value === null ? '–' : signed(value.difference, digits) +
-      (value.sigma === undefined ? '' : ` ± ${fixed(value.sigma, digits)}`) + (value.is_significant ? ' *' : '');
+  return value === null ? '–' :
+    uncertain(value.difference, value.sigma, 2, signed) + (value.is_significant ? ' *' : '');
 }
 
 function fillNumbers(data) {

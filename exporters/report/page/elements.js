@@ -27,6 +27,16 @@ function fixed(value, digits) {
   return typeof value === 'number' ? value.toFixed(digits).replace(/^-(?=0\.?0*$)/, '') : '–';
 }
 
+// `value ± sigma`, or only the value if it has no sigma. Both have more decimals than `digits` where
+// the sigma would be rounded to zero and four decimals are enough to show it.
+function uncertain(value, sigma, digits, write = fixed) {
+  const maxDigits = 4;
+  if (typeof sigma !== 'number') return write(value, digits);
+  const needed = sigma > 0 ? Math.ceil(Math.log10(0.5 / sigma)) : 0;
+  const shown = needed > maxDigits ? digits : Math.max(digits, needed);
+  return `${write(value, shown)} ± ${fixed(sigma, shown)}`;
+}
+
 // A number with `digits` significant digits, not in exponential form.
 function significant(value, digits) {
   return typeof value === 'number' ? String(Number(value.toPrecision(digits))) : '–';

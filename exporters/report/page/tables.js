@@ -184,8 +184,8 @@ function figure(name, start, unit, digits, factor) {
   const key = `${start}_${unit}`, sigmaKey = `${start}_sigma_${unit}`;
   return {
     name, value: row => row[key],
-    text: row => row[key] === undefined ? '–' : fixed(row[key] * factor, digits) +
-        (row[sigmaKey] === undefined ? '' : ` ± ${fixed(row[sigmaKey] * factor, digits)}`),
+    text: row => row[key] === undefined ? '–' :
+      uncertain(row[key] * factor, row[sigmaKey] && row[sigmaKey] * factor, digits),
   };
 }
 

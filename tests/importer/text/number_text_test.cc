@@ -20,7 +20,8 @@ TEST(UncertainText, NoSigmaIsRoundedToZero) {
 }
 
 TEST(UncertainText, HasFourDecimalsAtMost) {
-  EXPECT_EQ(UncertainText(8.01234, 1e-9, 1, 1, "±"), "8.0123 ± 0.0000");
+  EXPECT_EQ(UncertainText(8.01234, 6e-5, 1, 1, "±"), "8.0123 ± 0.0001");
+  EXPECT_EQ(UncertainText(8.01234, 4e-5, 1, 1, "±"), "8.0 ± 0.0");
 }
 
 TEST(UncertainText, ASigmaOfZeroChangesNothing) {

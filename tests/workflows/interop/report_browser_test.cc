@@ -58,6 +58,7 @@ class ReportBrowser : public BrowserTest {
     ReportSection section;
     section.name = "line h3";
     section.chord_m = Estimate{2.345, 0.0012};
+    section.camber_percent = Estimate{9.25, 0.003};
     section.profile_m = {{0, 0}, {1, 0.2}, {2.345, 0}};
     for (int i = 0; i < 13; ++i) {
       section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
@@ -88,6 +89,7 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   EXPECT_THAT(dom, HasSubstr("too blurred for two markers"));
   EXPECT_THAT(dom, HasSubstr("line h3"));
   EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
+  EXPECT_THAT(dom, HasSubstr("9.250 ± 0.003"));
   EXPECT_THAT(dom, HasSubstr("Dashed: design.step"));
   EXPECT_THAT(dom, HasSubstr("twist of sail refers to section h4"));
   EXPECT_THAT(dom, HasSubstr("Registration.method"));
