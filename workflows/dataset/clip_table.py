@@ -5,6 +5,7 @@ import io
 import os
 import re
 import shlex
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -136,7 +137,8 @@ def find_file(column: str, cell: str, folder: Path) -> Path | None:
     return folder / cell
 
 
-def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, str]]:
+def read_options(cell: str, folder: Path,
+                 is_option: Callable[[str], bool]) -> list[tuple[str, str]]:
     try:
         words = shlex.split(cell)
     except ValueError:
@@ -149,7 +151,7 @@ def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, st
             raise RowError(f"options: {word} is not an option; write --name value")
         if name in OWN_OPTIONS:
             raise RowError(f"options: the workflow gives --{name} itself; leave it out")
-        if name not in known:
+        if not is_option(name):
             raise RowError(f"options: velamap has no --{name} for a reconstruction; see velamap "
                            "automatic_reconstructor --help_all")
         if not equals:
@@ -168,8 +170,8 @@ def is_relative_path(name: str, value: str) -> bool:
     return name.endswith("_path") and value != "" and not os.path.isabs(value)
 
 
-def read_project(path: str, known: set[str]) -> list[tuple[str, str]]:
-    """The options of a project file that the jobs know, as velamap reads it."""
+def read_project(path: str, is_option: Callable[[str], bool]) -> list[tuple[str, str]]:
+    """The options of the jobs in a project file, as velamap reads it."""
     try:
         lines = read_start(Path(path)).decode("utf-8", "replace").splitlines()
     except OSError as error:
@@ -183,7 +185,7 @@ def read_project(path: str, known: set[str]) -> list[tuple[str, str]]:
         elif equals:
             options.append((section + name.strip(), value.strip()))
     options = [(name, value) for name, value in options
-               if name in known and name not in OWN_OPTIONS - OPTIONS_OF_CELLS]
+               if is_option(name) and name not in OWN_OPTIONS - OPTIONS_OF_CELLS]
     for name, value in options:
         if is_relative_path(name, value):
             raise RowError(f"options: project_path {path}: {name} {value} would count from the "
@@ -221,7 +223,7 @@ def read_num_parts(cell: str, path: Path) -> int:
     return int(cell)
 
 
-def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
+def read_row(row: dict[str, str], folder: Path, is_option: Callable[[str], bool]) -> list[Clip]:
     check_name(row["name"])
     paths = find_clips(row["clip"], folder)
     clips = []
@@ -230,9 +232,9 @@ def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
         check_name(clip.name)
         clip.camera = find_file("camera", row.get("camera", ""), folder)
         clip.layout = find_file("layout", row.get("layout", ""), folder)
-        clip.options = read_options(row.get("options", ""), folder, known)
+        clip.options = read_options(row.get("options", ""), folder, is_option)
         for name, value in clip.options:
-            clip.project += read_project(value, known) if name == "project_path" else []
+            clip.project += read_project(value, is_option) if name == "project_path" else []
         clip.central_frames = read_central_frames(row.get("central_frames", ""))
         clip.num_parts = read_num_parts(row.get("parts", ""), path)
         clip.tags = {name: value for name, value in row.items() if name not in COLUMNS}
@@ -246,8 +248,9 @@ def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
     return clips
 
 
-def read_table(path: Path, known: set[str]) -> tuple[list[str], list[Clip]]:
-    """The tags' names and the clips. Ends with a line for each bad row."""
+def read_table(path: Path, is_option: Callable[[str], bool]) -> tuple[list[str], list[Clip]]:
+    """The tags' names and the clips. Ends with a line for each bad row. `is_option` says whether a
+    command of the jobs has an option of this name."""
     records = read_records(path)
     if not records:
         fail(f"{path}: is empty; give a table with the columns {', '.join(COLUMNS)}")
@@ -265,7 +268,7 @@ def read_table(path: Path, known: set[str]) -> tuple[list[str], list[Clip]]:
             if len(cells) != len(header):
                 raise RowError(f"has {len(cells)} cells instead of {len(header)}; quote a cell "
                                "that holds the separator")
-            for clip in read_row(dict(zip(header, cells)), folder, known):
+            for clip in read_row(dict(zip(header, cells)), folder, is_option):
                 if clip.name in lines:
                     raise RowError(f"has the name {clip.name} of line {lines[clip.name]}; rename "
                                    "one")

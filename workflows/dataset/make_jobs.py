@@ -35,9 +35,15 @@ def ask_velamap(*arguments: str) -> str:
         fail(f"{program} {' '.join(arguments)}: fails; set VELAMAP to the program velamap")
 
 
-def options_of_commands() -> dict[str, set[str]]:
-    return {stage: set(re.findall(r"^  --([\w.]+)", ask_velamap(command, "--help_all"), re.M))
-            for stage, command in COMMANDS.items()}
+@functools.lru_cache(maxsize=None)
+def options_of(stage: str) -> frozenset[str]:
+    """The names of all options of a stage's command."""
+    text = ask_velamap(COMMANDS[stage], "--help_all")
+    return frozenset(re.findall(r"^  --([\w.]+)", text, re.M))
+
+
+def is_option(name: str) -> bool:
+    return any(name in options_of(stage) for stage in COMMANDS)
 
 
 @functools.lru_cache(maxsize=None)
@@ -62,12 +68,12 @@ def files_read(clip: Clip, options: Options) -> dict[str, list[int]]:
     return {file: state for path in paths if path for file, state in states_below(path).items()}
 
 
-def options_of_job(clip: Clip, stage: str, known: dict[str, set[str]]) -> tuple[Options, Options]:
+def options_of_job(clip: Clip, stage: str) -> tuple[Options, Options]:
     """The options for the command line of a job and for its project file, where one without effect
     is ignored. The reconstruction and the sweep have other defaults of method and backend, so an
     option of both may have an effect in one of them only. It then has to be accepted in the other."""
-    known_here = known[command_key(stage, clip)]
-    typed = [(name, value) for name, value in clip.options if name in known_here]
+    typed = [(name, value) for name, value in clip.options
+             if name in options_of(command_key(stage, clip))]
     if not clip.central_frames or stage not in ("reconstruct", "sweep"):
         return typed, []
     given = {name for name, _ in clip.options + clip.project}
@@ -78,8 +84,8 @@ def options_of_job(clip: Clip, stage: str, known: dict[str, set[str]]) -> tuple[
         if name == "project_path" or "#" in value:  # which begins a comment in the file
             return False
         if stage == "sweep":  # the reconstruction refuses what is without effect in both
-            return name in known["reconstruct"]
-        return (name in known["sweep"] and name.startswith("Registration.") and
+            return name in options_of("reconstruct")
+        return (name in options_of("sweep") and name.startswith("Registration.") and
                 not chooses_method)
 
     in_file = [option for option in typed if may_be_unused(option)]
@@ -170,8 +176,7 @@ def forget_lost_results(output: Path, clip: Clip, parts: list[str], retry_failed
 
 
 def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
-               known: dict[str, set[str]]) -> None:
-    version = ask_velamap("version").splitlines()[0]
+               version: str) -> None:
     retry_failed = os.environ.get("RETRY_FAILED") == "1"
     threads = max(1, cores // len(clips))
     rows: list[dict[str, Any]] = []
@@ -179,7 +184,7 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
         key = key_of(clip.name)
         parts = clip.part_stages()
         for stage in parts + clip.stages():
-            typed, in_file = options_of_job(clip, stage, known)
+            typed, in_file = options_of_job(clip, stage)
             job = {"stage": stage, "version": version,
                    "command": command_of(clip, stage, typed),
                    "after": parts if stage == "import" else [] if stage in parts else ["import"],
@@ -202,14 +207,14 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
 
 def main() -> None:
     table, output, cores = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
-    known = options_of_commands()
-    tags, clips = read_table(table, set.union(*known.values()))
+    tags, clips = read_table(table, is_option)
     try:
         check_output(output)
         check_folders(output, clips)
+        version = ask_velamap("version").splitlines()[0]
         if not (output / MARK).exists():
             write_whole(output / MARK, as_json({}))
-        write_jobs(output, tags, clips, cores, known)
+        write_jobs(output, tags, clips, cores, version)
     except OSError as error:  # permissions, a full disk
         fail(f"{error.filename}: {error.strerror}")
 
