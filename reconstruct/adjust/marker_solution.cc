@@ -8,6 +8,7 @@
 #include "importer/base/error.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
@@ -108,6 +109,16 @@ double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearizati
   return CorrelationFactor(
       linearization.state, linearization.problem, linearization.jacobian, linearization.covariance,
       GroupImages(solution.model, kNumCorrelationGroups), solution.options.num_threads);
+}
+
+double ShutterCorrelationFactor(const MarkerSolution& solution,
+                                const MarkerLinearization& linearization) {
+  const auto& [state, problem, jacobian, covariance] = linearization;
+  const int column = GlobalColumn(problem, &state.rolling_shutter_s);
+  if (column < 0) return 1.0;
+  return GlobalCorrelationFactor(state, problem, jacobian, covariance,
+                                 GroupImages(solution.model, kNumCorrelationGroups), column,
+                                 solution.options.num_threads);
 }
 
 std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution) {

@@ -58,6 +58,11 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
 // The factor of error_correlation.h, for groups of neighbouring images.
 double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization);
 
+// The factor for the sigma of the time from the first row to the last, because cloth that moves
+// between two frames moves its markers as a rolling shutter does. 1 where that time is held.
+double ShutterCorrelationFactor(const MarkerSolution& solution,
+                                const MarkerLinearization& linearization);
+
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution);
 

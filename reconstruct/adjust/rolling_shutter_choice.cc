@@ -1,5 +1,6 @@
 #include "reconstruct/adjust/rolling_shutter_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,7 +29,9 @@ bool IsDetermined(MarkerSolution trial) {
   const MarkerState& state = linearization->state;
   const double variance = GlobalCovariance(linearization->problem, linearization->covariance,
                                            &state.rolling_shutter_s)(0, 0);
-  const double sigma_s = std::sqrt(variance) * CorrelationFactor(trial, *linearization);
+  const double factor = std::max(CorrelationFactor(trial, *linearization),
+                                 ShutterCorrelationFactor(trial, *linearization));
+  const double sigma_s = std::sqrt(variance) * factor;
   const double sigmas = state.rolling_shutter_s / sigma_s;
   LogDebug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s, 1e3 * sigma_s);
   return sigmas * sigmas > InformationCriterion(1, trial) &&

@@ -22,14 +22,15 @@ constexpr int kBatchSize = 8, kMinNumBatches = 2, kMaxNumBatches = 5;
 // The simulation ends when 1 sigma of the expected movement is below this fraction of it.
 constexpr double kMaxMeanSigma = 0.005;
 
-// The linearized adjustment: maps errors of the residuals to movements of the points. Errors and
-// residuals have one row for each residual (corners, then priors) and one column for each case.
+// The linearized adjustment: maps errors of the residuals to movements of the shape, or of the
+// global parameter in `global_column` where that is not negative. Errors and residuals have one row
+// for each residual (corners, then priors) and one column for each case.
 class LinearAdjustment {
  public:
   LinearAdjustment(const MarkerState& state, const MarkerProblem& problem,
                    const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
-                   const std::vector<int>& groups)
-      : jacobian_(jacobian), covariance_(covariance) {
+                   const std::vector<int>& groups, int global_column)
+      : jacobian_(jacobian), covariance_(covariance), global_column_(global_column) {
     const std::vector<Eigen::Vector3d> positions = Positions(state);
     motions_ = RigidMotions(positions);
     motions_.conservativeResize(Eigen::NoChange, motions_.cols() + 1);
@@ -49,8 +50,8 @@ class LinearAdjustment {
 
   Eigen::Index NumRows() const { return num_rows_; }
 
-  // Squared movement of the shape that the corners' residuals of one group alone cause, summed over
-  // the groups, for each case.
+  // Squared movement that the corners' residuals of one group alone cause, summed over the groups,
+  // for each case.
   Eigen::VectorXd SquaredMovements(const RowMajorMatrix& residuals) const {
     const Eigen::Index num_cases = residuals.cols();
     ParameterColumns parameters = ZeroColumns(covariance_, num_groups_ * num_cases);
@@ -61,9 +62,7 @@ class LinearAdjustment {
       row += jacobian_.corners[i].NumRows();
     }
     MultiplyByCovariance(covariance_, &parameters);
-    RowMajorMatrix& movements = parameters.of_points;
-    movements -= motions_ * (motions_.transpose() * movements).eval();
-    const Eigen::VectorXd squares = movements.colwise().squaredNorm().transpose();
+    const Eigen::VectorXd squares = Movements(parameters).colwise().squaredNorm().transpose();
     return Eigen::Map<const Eigen::MatrixXd>(squares.data(), num_cases, num_groups_)
         .rowwise()
         .sum();
@@ -75,8 +74,14 @@ class LinearAdjustment {
   }
 
  private:
+  RowMajorMatrix Movements(const ParameterColumns& steps) const {
+    if (global_column_ >= 0) return steps.of_globals.row(global_column_);
+    return steps.of_points - motions_ * (motions_.transpose() * steps.of_points);
+  }
+
   const MarkerJacobian& jacobian_;
   const MarkerCovariance& covariance_;
+  int global_column_ = -1;
   Eigen::Index num_rows_ = 0;
   std::vector<int> group_of_block_;
   int num_groups_ = 0;
@@ -124,6 +129,24 @@ ExpectedMovement SimulateIndependentErrors(const LinearAdjustment& adjustment, i
   return expected;
 }
 
+// How much farther than independent errors the residuals of the groups move the result.
+struct Excess {
+  double factor = 1.0;
+  double factor_sigma = 0.0;  // by chance
+  bool is_significant = false;
+};
+
+Excess FindExcess(const LinearAdjustment& adjustment, const MarkerProblem& problem,
+                  int num_threads) {
+  RowMajorMatrix residuals = RowMajorMatrix::Zero(adjustment.NumRows(), 1);
+  const std::vector<double> of_corners = CornerResiduals(problem);
+  std::copy(of_corners.begin(), of_corners.end(), residuals.data());
+  const double found = adjustment.SquaredMovements(residuals)[0];
+  const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);
+  return {std::sqrt(found / expected.mean), 0.5 * expected.sigma / expected.mean,
+          found > expected.mean + 2.0 * expected.sigma};
+}
+
 }  // namespace
 
 std::vector<int> GroupImages(const Model& model, int max_num_groups) {
@@ -143,18 +166,21 @@ std::vector<int> GroupImages(const Model& model, int max_num_groups) {
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                          const std::vector<int>& groups, int num_threads) {
-  const LinearAdjustment adjustment(state, problem, jacobian, covariance, groups);
-  RowMajorMatrix residuals = RowMajorMatrix::Zero(adjustment.NumRows(), 1);
-  const std::vector<double> of_corners = CornerResiduals(problem);
-  std::copy(of_corners.begin(), of_corners.end(), residuals.data());
-  const double found = adjustment.SquaredMovements(residuals)[0];
-  const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);
-  const double factor = std::sqrt(found / expected.mean);
+  const Excess excess = FindExcess(
+      LinearAdjustment(state, problem, jacobian, covariance, groups, -1), problem, num_threads);
   LogDebug(
       "the residuals of groups of images move the shape {:.3f} +- {:.3f} times as far as "
       "independent errors",
-      factor, 0.5 * expected.sigma / expected.mean);
-  return found > expected.mean + 2.0 * expected.sigma ? factor : 1.0;
+      excess.factor, excess.factor_sigma);
+  return excess.is_significant ? excess.factor : 1.0;
+}
+
+double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
+                               const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                               const std::vector<int>& groups, int column, int num_threads) {
+  const Excess excess = FindExcess(
+      LinearAdjustment(state, problem, jacobian, covariance, groups, column), problem, num_threads);
+  return std::max(1.0, excess.factor);
 }
 
 }  // namespace velamap

@@ -10,16 +10,6 @@
 namespace velamap {
 namespace {
 
-// Column of a global parameter; -1 where it does not vary.
-int GlobalColumn(const MarkerProblem& problem, const double* values) {
-  int column = 0;
-  for (const double* block : problem.global_blocks) {
-    if (block == values) return column;
-    column += problem.ceres->ParameterBlockTangentSize(block);
-  }
-  return -1;
-}
-
 // 1 sigma of the global in `column`, with the scale bars as additional measurements.
 double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCovariance& points,
                    const Eigen::MatrixXd& bar_gradients, const Eigen::VectorXd& bar_sigmas) {
@@ -46,6 +36,15 @@ Eigen::MatrixXd BarGradients(const std::vector<ScaleBar>& bars, const MarkerStat
 }
 
 }  // namespace
+
+int GlobalColumn(const MarkerProblem& problem, const double* block) {
+  int column = 0;
+  for (const double* global : problem.global_blocks) {
+    if (global == block) return column;
+    column += problem.ceres->ParameterBlockTangentSize(global);
+  }
+  return -1;
+}
 
 std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
   std::vector<Eigen::Vector3d> positions;

@@ -25,6 +25,9 @@ PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covar
 Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerState& state,
                               const MarkerProblem& problem, const MarkerCovariance& covariance);
 
+// First column of a block of global parameters; -1 where it does not vary.
+int GlobalColumn(const MarkerProblem& problem, const double* block);
+
 // Covariance of one global parameter block that varies, in its tangent space.
 Eigen::MatrixXd GlobalCovariance(const MarkerProblem& problem, const MarkerCovariance& covariance,
                                  const double* block);

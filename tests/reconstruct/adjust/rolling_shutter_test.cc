@@ -29,12 +29,12 @@ class RollingShutter : public testing::Test {
   RollingShutter() { Stage({}); }
 
   // `camera` is that of SyntheticSceneOptions.
-  void Stage(const Camera& camera) {
+  void Stage(const Camera& camera, int num_frames = 9) {
     SyntheticSceneOptions options;
     options.camera = camera;
     options.num_rows = 3;
     options.num_columns = 4;
-    options.num_frames = 9;
+    options.num_frames = num_frames;
     scene_ = MakeSyntheticScene(options);
     truth_ = MakeSceneModel(scene_);
     std::mt19937 random(4);
@@ -48,6 +48,15 @@ class RollingShutter : public testing::Test {
       motions_.push_back({draw(0.3), draw(0.2)});
   }
 
+  // How far the cloth is from its mean shape in a frame, in waves that differ between frames.
+  Eigen::Vector3d Flap(std::size_t frame_idx, const Eigen::Vector3d& x_in_world) const {
+    if (flaps_m_.empty()) return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d& flap_m = flaps_m_[frame_idx];
+    return {0, 0,
+            flap_m.x() * std::sin(9 * x_in_world.x() + 1000 * flap_m.y()) +
+                flap_m.z() * std::sin(9 * x_in_world.y())};
+  }
+
   // Detections in a frame of the scene `time_s` after it, each row at its own time.
   FrameDetections Detections(std::size_t frame_idx, double time_s, double rolling_shutter_s) const {
     FrameDetections detections = scene_.frames[frame_idx];
@@ -55,8 +64,9 @@ class RollingShutter : public testing::Test {
     for (MarkerDetection& marker : detections.markers) {
       for (int c = 0; c < kNumCorners; ++c) {
         Eigen::Vector2d& x_px = marker.corners_in_image_px[c];
+        const Eigen::Vector3d x_in_world = scene_.x_in_world.at(marker.marker_id)[c + 1];
         const Eigen::Vector3d x =
-            scene_.cam_from_world[frame_idx] * scene_.x_in_world.at(marker.marker_id)[c + 1];
+            scene_.cam_from_world[frame_idx] * (x_in_world + Flap(frame_idx, x_in_world));
         for (int k = 0; k < 20; ++k) {  // the row decides the time that decides the row
           const double row = scene_.camera.width_px > scene_.camera.height_px
                                  ? x_px.y() / scene_.camera.height_px - 0.5
@@ -97,6 +107,7 @@ class RollingShutter : public testing::Test {
   SyntheticScene scene_;
   Model truth_;
   std::vector<Motion> motions_;
+  std::vector<Eigen::Vector3d> flaps_m_;  // empty: the cloth is still
   Model model_;
   CornerErrors corner_errors_;
 };
@@ -119,6 +130,29 @@ TEST_F(RollingShutter, IsFoundInEitherDirectionAndTakenOut) {
     EXPECT_THAT(summary.warnings, IsEmpty());
     EXPECT_EQ(without.uncertainty.rolling_shutter_sigma_s, 0);
   }
+}
+
+TEST_F(RollingShutter, SigmaContainsTheMotionOfTheCloth) {
+  constexpr int kNumDraws = 12;
+  constexpr double kShutter_s = 0.02;
+  Stage({}, 20);
+  double sum = 0.0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    std::mt19937 random(static_cast<std::uint32_t>(draw));
+    std::normal_distribution<double> amplitude_m(0.0, 0.0004);
+    flaps_m_.clear();
+    for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
+      const double x = amplitude_m(random), y = amplitude_m(random), z = amplitude_m(random);
+      flaps_m_.emplace_back(x, y, z);
+    }
+    Film(kShutter_s, 0.1, static_cast<std::uint32_t>(draw));
+    const AdjustmentUncertainty found = Adjust().uncertainty;
+    ASSERT_GT(found.rolling_shutter_sigma_s, 0) << draw;
+    sum += std::pow((found.rolling_shutter_s - kShutter_s) / found.rolling_shutter_sigma_s, 2);
+  }
+  const double rms = std::sqrt(sum / kNumDraws);
+  EXPECT_GT(rms, 0.5);
+  EXPECT_LT(rms, 1.5);
 }
 
 // A phone held upright: the rows of its sensor are the columns of the frames.
