@@ -132,12 +132,14 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   const BalancedEdges balanced = WithBalancedEdges(winner, workers);
   const BalancedEdges outlines = WithBalancedOutlines(balanced.state, workers);
   const State& best = outlines.state;
+  const double noise_gray = NoiseOf(best);
+  if (!std::isfinite(noise_gray)) return Unknown();  // no sample could be fitted once more
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
   estimate.parameters.quiet_zone_sigma_cells =
       std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
-  estimate.noise_gray = NoiseOf(best);
+  estimate.noise_gray = noise_gray;
   const double by_model_px = InsetSigmaByModel(winner, balanced.state);
   const FormationProblem problem(priors, NoisesOf(winner), workers);
   const double by_parameters_px = problem.InsetSigma(winner);
