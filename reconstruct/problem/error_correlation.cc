@@ -132,7 +132,7 @@ ExpectedMovement SimulateIndependentErrors(const LinearAdjustment& adjustment, i
 // How much farther than independent errors the residuals of the groups move the result.
 struct Excess {
   double factor = 1.0;
-  double factor_sigma = 0.0;  // by chance
+  double factor_sigma = 0.0;  // of independent errors
   bool is_significant = false;
 };
 

@@ -30,10 +30,11 @@ double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                          const std::vector<int>& groups, int num_threads);
 
-// The factor, 1 or more, by which the sigma of the global parameter in `column` has to grow: that
-// of CorrelationFactor for the movement of this parameter instead of the shape, and without regard
-// to chance. It contains whatever the residuals of a group have in common, such as a motion of the
-// markers that the parameters do not describe.
+// The factor, 1 or more, by which the sigma of the global parameter in `column` has to grow. It is
+// found like CorrelationFactor, from movements of this parameter instead of the shape, but kept
+// where it may be chance: the few groups of one parameter would hide factors of up to 1.5. It
+// contains whatever the residuals of a group have in common, such as a motion of the markers that
+// no parameter describes.
 double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                                const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                                const std::vector<int>& groups, int column, int num_threads);
