@@ -274,6 +274,10 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
       MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
     }
   }
+  if (noise.is_nominal) {
+    smooth.pole_covariance_m2.resize(0, 0);
+    smooth.pole_by_term.resize(0, 0);
+  }
   CheckArea(sorted, ends, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;

@@ -20,8 +20,8 @@
 // Generalized cross-validation decides on the weights a and b (Golub, Heath and Wahba, 1979);
 // sigmas weigh the markers against each other, and markers without one get the median. Fewer than
 // 30 markers with sigmas get the weights that minimize the expected error of the distances along
-// the normal (Mallows, "Some comments on Cp", 1973); fewer than 30 without sigmas, or a sigma of 0,
-// are interpolated.
+// the normal (Mallows, "Some comments on Cp", 1973); without sigmas, all get a small nominal one.
+// A sigma of 0 means that all markers are interpolated.
 
 #pragma once
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "importer/base/ids.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
@@ -12,6 +14,15 @@
 namespace velamap {
 
 namespace {
+
+// Makes a surface fair that few markers without sigmas would let swing between them. Ten times more
+// or less hardly changes it.
+double NominalSigma(const SortedInput& sorted) {
+  constexpr double kOfDiagonal = 3e-5;  // 0.1 mm on a sail of 3 m
+  Eigen::AlignedBox3d box;
+  for (const auto& [id, marker] : sorted.by_id) box.extend(marker.x_in_shape_m);
+  return kOfDiagonal * box.diagonal().norm();
+}
 
 // The noise that residuals show which a fit with so many parameters has made smaller.
 double NoiseOf(std::vector<double> residuals, double num_parameters) {
@@ -31,11 +42,12 @@ MarkerNoise DescribeNoise(const SortedInput& sorted) {
     some_zero = some_zero || (sigma && *sigma <= 0);
   }
   MarkerNoise noise;
-  if (some_zero || (known.empty() && sorted.by_id.size() < kMinCrossValidated)) {
+  noise.edge_sigma_m = known.empty() ? NominalSigma(sorted) : Median(known);
+  if (some_zero) {
     noise.smoothing = Smoothing::kInterpolate;
-  } else if (!known.empty()) {
-    if (sorted.by_id.size() < kMinCrossValidated) noise.smoothing = Smoothing::kKnownSigma;
-    noise.edge_sigma_m = Median(known);
+  } else if (sorted.by_id.size() < kMinCrossValidated) {
+    noise.smoothing = Smoothing::kKnownSigma;
+    noise.is_nominal = known.empty();
   }
   for (const auto& [id, marker] : sorted.by_id) {
     const double sigma_m = noise.smoothing == Smoothing::kInterpolate

@@ -17,6 +17,7 @@ struct MarkerNoise {
   std::map<int, double> sigma_m, tilt_sigma_m;
   double edge_sigma_m = 1.0;
   Smoothing smoothing = Smoothing::kCrossValidation;
+  bool is_nominal = false;  // kKnownSigma without any sigma: the surface has none either
 };
 
 MarkerNoise DescribeNoise(const SortedInput& sorted);
