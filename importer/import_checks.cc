@@ -1,6 +1,7 @@
 #include "importer/import_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "importer/frame_camera.h"
 #include "importer/video/frame_source.h"
 #include "importer/video/source_file.h"
+#include "importer/video/video_decoder.h"
 #include "importer/video/written_frame.h"
 
 namespace velamap {
@@ -61,6 +63,12 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
   const fs::path file = fs::path(options.image_path) / name;
   if (IsRegularFile(file)) {
     if (HasSameContent(known, file.string())) return;
+    if (!options.is_only_source && !IsSamePlace(known, file)) {
+      throw InputError(fmt::format(
+          "{}: holds another picture of the name {} ({}); rename the pictures, or put both folders "
+          "into one and import that into a new database",
+          options.database_path, name, SourceText(known)));
+    }
     throw InputError(fmt::format("{}: {} has changed since it was imported (it was {}); {}",
                                  options.database_path, file.string(), SourceText(known),
                                  kImportAnewRemedy));
@@ -190,6 +198,18 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
                     "it away, or choose another folder",
                     file.string()));
   }
+}
+
+void CheckPixelAspect(const MarkerImporterOptions& options) {
+  constexpr double kTolerance = 0.01;  // rounded ratios such as 4320:4319 mean square pixels
+  if (options.camera || IsFolder(options.image_path)) return;
+  const double pixel_aspect = VideoDecoder(options.image_path, 1).PixelAspect();
+  if (std::abs(pixel_aspect - 1) < kTolerance) return;
+  throw InputError(fmt::format(
+      "{}: its pixels are {:.3f} times as wide as high, and without a calibration they are taken "
+      "to be square; make them square with ffmpeg -i VIDEO -vf scale=iw*sar:ih,setsar=1 -crf 12 "
+      "square.mp4, or give --camera_path with a calibration from such pictures",
+      options.image_path, pixel_aspect));
 }
 
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,

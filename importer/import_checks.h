@@ -1,4 +1,4 @@
-// Refuses a database that was made with other settings, and frames without markers.
+// Refuses a database that was made with other settings, and frames that cannot be used.
 
 #pragma once
 
@@ -35,6 +35,9 @@ void RecordSources(const MarkerImporterOptions& options,
 // Removes what an interrupted run has left unfinished.
 void CheckFrameFolder(const MarkerImporterOptions& options,
                       const std::vector<std::string>& known_names);
+
+// Throws InputError if the pixels of a video are not square and no calibration describes them.
+void CheckPixelAspect(const MarkerImporterOptions& options);
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
 // With a wrong dictionary or polarity, false ids are found, most of which the layout does not name.

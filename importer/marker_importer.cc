@@ -148,6 +148,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (known_names.empty()) database.ForgetSources();
   CheckSources(options, known_names, database);
+  CheckPixelAspect(options);
   CheckPart(options, database);
   CheckSameSettings(options, DescribeDetector(detector), database);
   RecordSources(options, known_names, &database);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include <opencv2/imgproc.hpp>
 
@@ -29,6 +31,71 @@ QuadCorners RefineSubpix(const cv::Mat& gray, const QuadCorners& quad, int num_c
   return refined;
 }
 
+// A detection and the residual of its pattern; infinite if only its sides, or nothing, could be
+// fitted.
+struct FittedDetection {
+  MarkerDetection marker;
+  double rms_gray = std::numeric_limits<double>::infinity();
+};
+
+// Nothing for a quad that shows no marker.
+std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const MarkerQuad& found,
+                                            const Dictionary& dictionary, int border_bits,
+                                            const ArucoDetectionOptions& options,
+                                            const ImageFormation& formation) {
+  ReadMarker read{found, {}};
+  auto& [quad, refined] = read;
+  const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
+  if (options.corner_refinement == CornerRefinement::kNone) {
+    refined = RefinedCorners{found.corners_px};
+  } else if (fits_edges) {
+    read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation);
+  }
+  const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
+  const bool is_fitted = refined.has_value();
+  // What only an enlarged picture shows has to look like the whole marker.
+  if (fits_edges && !is_fitted && quad.is_second_look) return std::nullopt;
+  if (!is_fitted) {
+    refined = RefinedCorners{RefineSubpix(dark_on_light, quad.corners_px, cells.rows)};
+  }
+  FittedDetection detection;
+  detection.marker.marker_id = quad.marker_id;
+  if (fits_edges) {
+    const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);
+    detection.marker.is_fallback = !is_fitted && num_saddles < kNumCorners;
+  }
+  detection.marker.corner_sigma_px = refined->sigma_px;
+  if (refined->rms_gray > 0) detection.rms_gray = refined->rms_gray;
+  for (int c = 0; c < kNumCorners; ++c) {
+    detection.marker.corners_in_image_px[c] = refined->corners_px[c].array() + kImageFromOpenCvPx;
+  }
+  return detection;
+}
+
+bool AreAtSamePlace(const MarkerDetection& a, const MarkerDetection& b) {
+  const double side_a_px = QuadMeanSide(a.corners_in_image_px);
+  const double side_b_px = QuadMeanSide(b.corners_in_image_px);
+  const double half_px = 0.5 * std::max(side_a_px, side_b_px);
+  return std::min(side_a_px, side_b_px) > half_px &&
+         (CornerMean(a) - CornerMean(b)).norm() < half_px;
+}
+
+// The search may read several outlines of one marker, and some of them wrongly. The reading whose
+// pattern fits best is kept. Without patterns, nothing tells which of two ids is right.
+void AddReading(const FittedDetection& reading, std::vector<FittedDetection>* detections) {
+  const auto other =
+      std::find_if(detections->begin(), detections->end(), [&](const FittedDetection& detection) {
+        const bool differ = detection.marker.marker_id != reading.marker.marker_id;
+        const bool has_pattern = std::isfinite(std::min(detection.rms_gray, reading.rms_gray));
+        return AreAtSamePlace(detection.marker, reading.marker) && (has_pattern || !differ);
+      });
+  if (other == detections->end()) {
+    detections->push_back(reading);
+  } else if (reading.rms_gray < other->rms_gray) {
+    *other = reading;
+  }
+}
+
 }  // namespace
 
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
@@ -44,38 +111,17 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const ImageFormation& formation) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
   const cv::Mat dark_on_light = options.inverted ? cv::Mat(~gray) : gray;
-  std::vector<MarkerDetection> detections;
-  int num_fallbacks = 0;
-  for (const MarkerQuad& found : quads) {
+  std::vector<FittedDetection> fitted;
+  for (const MarkerQuad& quad : quads) {
     const StageTimer timer(ImportStage::kRefine);
-    ReadMarker read{found, {}};
-    auto& [quad, refined] = read;
-    const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
-    if (options.corner_refinement == CornerRefinement::kNone) {
-      refined = RefinedCorners{found.corners_px};
-    } else if (fits_edges) {
-      read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation);
-    }
-    const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
-    const bool is_fitted = refined.has_value();
-    // What only an enlarged picture shows has to look like the whole marker.
-    if (fits_edges && !is_fitted && quad.is_second_look) continue;
-    if (!is_fitted) {
-      refined = RefinedCorners{RefineSubpix(dark_on_light, quad.corners_px, cells.rows)};
-    }
-    MarkerDetection detection;
-    detection.marker_id = quad.marker_id;
-    if (fits_edges) {
-      const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);
-      detection.is_fallback = !is_fitted && num_saddles < kNumCorners;
-      num_fallbacks += detection.is_fallback;
-    }
-    detection.corner_sigma_px = refined->sigma_px;
-    for (int c = 0; c < kNumCorners; ++c) {
-      detection.corners_in_image_px[c] = refined->corners_px[c].array() + kImageFromOpenCvPx;
-    }
-    detections.push_back(detection);
+    const auto reading =
+        RefineMarker(dark_on_light, quad, dictionary, border_bits, options, formation);
+    if (reading) AddReading(*reading, &fitted);
   }
+  std::vector<MarkerDetection> detections;
+  for (const FittedDetection& detection : fitted) detections.push_back(detection.marker);
+  const auto num_fallbacks = std::count_if(detections.begin(), detections.end(),
+                                           [](const auto& marker) { return marker.is_fallback; });
   if (num_fallbacks > 0) {
     LogDebug("{} of {} markers: no edge fit, corners from cv::cornerSubPix", num_fallbacks,
              detections.size());

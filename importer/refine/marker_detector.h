@@ -23,8 +23,9 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
                                            int border_bits, const ArucoDetectionOptions& options);
 
 // The second half of DetectMarkers(): refines the corners of markers that have been found, in their
-// order, and reads the codes of fitted ones again (read_again.h). Leaves out markers that only a
-// second look has found and that cannot be fitted.
+// order, and reads the codes of fitted ones again (read_again.h). Of several readings at one place,
+// the one that fits best is kept. Leaves out markers that only a second look has found and that
+// cannot be fitted.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,

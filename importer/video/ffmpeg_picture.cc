@@ -56,7 +56,8 @@ const AVCodec* FindDecoder(const std::vector<std::uint8_t>& bytes) {
 }  // namespace
 
 cv::Mat DecodeWithFfmpeg(const std::vector<std::uint8_t>& bytes) {
-  av_log_set_level(AV_LOG_QUIET);  // it would print its own lines about a broken file
+  av_log_set_callback(NoteLoggedDamage);
+  PacketDamage damage;  // outlives the codec, which writes to it
   const AVCodec* decoder = FindDecoder(bytes);
   if (decoder == nullptr || bytes.size() > std::numeric_limits<int>::max()) return {};
   const std::unique_ptr<AVCodecContext, FfmpegFreer> codec(avcodec_alloc_context3(decoder));
@@ -68,13 +69,15 @@ cv::Mat DecodeWithFfmpeg(const std::vector<std::uint8_t>& bytes) {
   }
   std::memcpy(packet->data, bytes.data(), bytes.size());
   codec->thread_count = 1;
+  codec->opaque = &damage;
+  codec->reordered_opaque = damage.Add(VideoPacket::kNoTime, true);
   if (avcodec_open2(codec.get(), decoder, nullptr) < 0 ||
       avcodec_send_packet(codec.get(), packet.get()) < 0 ||
       avcodec_send_packet(codec.get(), nullptr) < 0 ||
       avcodec_receive_frame(codec.get(), frame.get()) < 0) {
     return {};
   }
-  return VideoPicture(*frame).Color();
+  return damage.IsWhole(codec->reordered_opaque) ? VideoPicture(*frame).Color() : cv::Mat();
 }
 
 }  // namespace velamap

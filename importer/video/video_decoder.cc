@@ -45,6 +45,8 @@ VideoDecoder::~VideoDecoder() = default;
 
 int VideoDecoder::NumQuarterTurns() const { return num_quarter_turns_; }
 
+double VideoDecoder::PixelAspect() const { return stream_->PixelAspect(); }
+
 bool VideoDecoder::IsMarkedInterlaced() const {
   const AVFieldOrder order = stream_->stream().codecpar->field_order;
   return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
@@ -54,7 +56,7 @@ int VideoDecoder::NumContainerFrames() const {
   const double count =
       stream_->stream().nb_frames > 0
           ? static_cast<double>(stream_->stream().nb_frames)
-          : std::floor(stream_->DurationSeconds() * stream_->FramesPerSecond() + 0.5);
+          : std::floor(stream_->DurationSeconds() * stream_->MeanFramesPerSecond() + 0.5);
   return count > 0 && count < 1e9 ? static_cast<int>(count) : 0;
 }
 

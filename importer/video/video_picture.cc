@@ -213,9 +213,7 @@ cv::Mat VideoPicture::Color() const { return Turned(ConvertToColor(*frame_)); }
 
 std::optional<ChromaPlanes> VideoPicture::HalfSizeChroma() const {
   const bool has_odd_size = frame_->width % 2 != 0 || frame_->height % 2 != 0;
-  if (!HasPlainHalfSizeChroma(*frame_) || (num_quarter_turns_ != 0 && has_odd_size)) {
-    return std::nullopt;
-  }
+  if (!HasPlainHalfSizeChroma(*frame_) || has_odd_size) return std::nullopt;
   return ChromaPlanes{Turned(FullRangeChroma(*frame_, 1)), Turned(FullRangeChroma(*frame_, 2))};
 }
 

@@ -64,21 +64,6 @@ bool IsHarmless(const char* message) {
                      [&](const char* words) { return std::strstr(message, words) != nullptr; });
 }
 
-// FFmpeg's decoders conceal damage, and with several threads they lose the flags of a frame that
-// report it. But they always log it, in the context of the packet.
-void NoteLoggedDamage(void* context, int level, const char* format, va_list /*arguments*/) {
-  if (context == nullptr) return;
-  const bool is_damage =
-      (level <= AV_LOG_ERROR && !IsHarmless(format)) || std::strncmp(format, "concealing", 10) == 0;
-  const AVClass* kind = *static_cast<const AVClass**>(context);
-  if (!is_damage || kind == nullptr || kind != avcodec_get_class()) return;
-  const auto* codec = static_cast<const AVCodecContext*>(context);
-  // Set for the decoders of this file only.
-  if (auto* damage = static_cast<PacketDamage*>(codec->opaque)) {
-    damage->Mark(codec->reordered_opaque);
-  }
-}
-
 FormatPtr OpenFormat(const std::string& path) {
   // By default FFmpeg would print lines of its own about a broken file.
   av_log_set_callback(NoteLoggedDamage);
@@ -115,12 +100,30 @@ AVStream* ChooseVideoStream(const std::string& path, AVFormatContext* format) {
   return chosen;
 }
 
+// FFmpeg writes 0/1 or 0/0 for what it does not know.
+double ValueOr(const AVRational& ratio, double unknown) {
+  return ratio.num > 0 && ratio.den > 0 ? av_q2d(ratio) : unknown;
+}
+
 int Checked(int result) {
   if (result == AVERROR(ENOMEM)) throw std::bad_alloc();
   return result;
 }
 
 }  // namespace
+
+void NoteLoggedDamage(void* context, int level, const char* format, va_list /*arguments*/) {
+  if (context == nullptr) return;
+  const bool is_damage =
+      (level <= AV_LOG_ERROR && !IsHarmless(format)) || std::strncmp(format, "concealing", 10) == 0;
+  const AVClass* kind = *static_cast<const AVClass**>(context);
+  if (!is_damage || kind == nullptr || kind != avcodec_get_class()) return;
+  const auto* codec = static_cast<const AVCodecContext*>(context);
+  // Set for the decoders of this file only.
+  if (auto* damage = static_cast<PacketDamage*>(codec->opaque)) {
+    damage->Mark(codec->reordered_opaque);
+  }
+}
 
 VideoStream::VideoStream(const std::string& path)
     : format_(OpenFormat(path)),
@@ -148,8 +151,13 @@ void VideoStream::OpenCodec(const std::string& path, int num_threads) {
 }
 
 double VideoStream::FramesPerSecond() const {
-  const AVRational rate = av_guess_frame_rate(format_.get(), stream_, nullptr);
-  return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0.0;
+  return ValueOr(av_guess_frame_rate(format_.get(), stream_, nullptr), 0.0);
+}
+
+double VideoStream::MeanFramesPerSecond() const { return ValueOr(stream_->avg_frame_rate, 0.0); }
+
+double VideoStream::PixelAspect() const {
+  return ValueOr(av_guess_sample_aspect_ratio(format_.get(), stream_, nullptr), 1.0);
 }
 
 // Angles between quarters are left alone, as in cv::VideoCapture.

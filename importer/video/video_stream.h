@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstdarg>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,6 +27,12 @@ struct FfmpegFreer {
   void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
 
+// A callback for av_log_set_callback() that prints nothing. It marks the packet that a decoder
+// reports as damaged, if the decoder's `opaque` is a PacketDamage and its `reordered_opaque` the
+// number of the packet. Frames that are damaged are known in no other way: FFmpeg's decoders
+// conceal damage, and with several threads they lose the flags that report it.
+void NoteLoggedDamage(void* context, int level, const char* format, va_list arguments);
+
 // Throws std::bad_alloc where FFmpeg runs out of memory, which must not pass for the end of the
 // video.
 class VideoStream {
@@ -39,9 +46,12 @@ class VideoStream {
   const AVStream& stream() const { return *stream_; }
   const AVFrame& frame() const { return *frame_; }
 
-  double FramesPerSecond() const;  // 0 if unknown
-  double DurationSeconds() const;  // 0 if unknown
-  int NumQuarterTurns() const;     // clockwise, as the metadata say
+  // FFmpeg's guess, which for a variable rate is one whose multiples all gaps are. 0 if unknown.
+  double FramesPerSecond() const;
+  double MeanFramesPerSecond() const;  // as the container states it; 0 if it does not
+  double DurationSeconds() const;      // 0 if unknown
+  double PixelAspect() const;          // width over height of a pixel; 1 if unknown
+  int NumQuarterTurns() const;         // clockwise, as the metadata say
 
   // Lists the first packets of the video without decoding. Empty if one is damaged.
   std::vector<VideoPacket> ListPackets(std::size_t max_num_packets);

@@ -89,6 +89,15 @@ std::vector<BadInput> ChangedSources() {
          RunGood(dir, kImport);
          fs::remove(dir / "images/4.png");
        }},
+      {"AnotherFolderWithTheSameNames",
+       "marker_importer --image_path @/other --camera_path @/camera.yml --layout_path "
+       "@/layout.yml --database_path @/new.db",
+       2, "holds another picture of the name 1.png",
+       [](const fs::path& dir) {
+         RunGood(dir, kImport);
+         fs::create_directory(dir / "other");
+         fs::copy(dir / "images/2.png", dir / "other/1.png");
+       }},
       {"APhotographReplacedInTheFolderOfADatabase", kImport, 2, "has changed since it was imported",
        [](const fs::path& dir) {
          RunGood(dir, kImport);

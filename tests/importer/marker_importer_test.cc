@@ -1,5 +1,6 @@
 #include "importer/marker_importer.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -221,6 +222,20 @@ TEST_F(MarkerImporterTest, RareMarkersAreAcceptedWhereNothingElseIsFound) {
   WritePicture("0.png", 0, {1});
   for (int i = 1; i < 5; ++i) WritePicture(std::to_string(i) + ".png", i, {});
   EXPECT_EQ(ImportMarkers(options_).num_markers, 1);
+}
+
+TEST_F(MarkerImporterTest, PixelsThatAreNotSquareNeedACalibration) {
+  options_.image_path = dir_ / "wide.mp4";
+  const std::string command =
+      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=320x200 -frames:v 3 -vf setsar=4/3 "
+      "-c:v libx264 '" +
+      options_.image_path + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); },
+                          {"no marker"});  // with the camera's calibration
+  options_.camera.reset();
+  ExpectThrows<InputError>([&] { ImportMarkers(options_); },
+                           {"wide.mp4", "1.333 times", "setsar=1"});
 }
 
 TEST_F(MarkerImporterTest, ImageOfAnotherSizeNeedsAPureScale) {

@@ -102,6 +102,32 @@ TEST(DetectMarkers, DuplicatedIdsAreAllHandedOut) {
   EXPECT_EQ(DetectMarkers(gray, dictionary, 1, {}).size(), 2u);
 }
 
+// The search may find several outlines of one marker, and take some of them for another marker.
+TEST(RefineMarkers, TwoReadingsOfOnePlaceAreOneMarker) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {480, 400}, kDrawn));
+  const std::vector<MarkerQuad> found = SearchMarkers(gray, dictionary, 1, {});
+  ASSERT_EQ(found.size(), kDrawn.size());
+  for (const int wrong_id : {0, 20, 37}) {
+    std::vector<MarkerQuad> quads;
+    for (const MarkerQuad& quad : found) {
+      MarkerQuad wrong = quad;
+      wrong.marker_id = wrong_id;
+      for (Eigen::Vector2d& corner : wrong.corners_px) corner.x() += 0.5;
+      quads.insert(quads.end(), {wrong, quad});
+    }
+    for (const bool wrong_first : {true, false}) {
+      if (!wrong_first) std::reverse(quads.begin(), quads.end());
+      const auto markers = Sorted(RefineMarkers(gray, quads, dictionary, 1, {}));
+      ASSERT_EQ(markers.size(), kDrawn.size());
+      for (std::size_t i = 0; i < markers.size(); ++i) {
+        EXPECT_EQ(markers[i].marker_id, kDrawn[i].marker_id);
+        EXPECT_LT(MaxCornerError(markers[i], kDrawn[i]), 0.1);
+      }
+    }
+  }
+}
+
 TEST(SuggestDictionaries, NamesTheSmallestDictionaryAndThePolarity) {
   const Dictionary dictionary = LoadDictionary("DICT_5X5_100");
   const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {480, 200},

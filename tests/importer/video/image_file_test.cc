@@ -145,6 +145,28 @@ TEST(DecodeImageFile, AJpegWithADamagedMiddleIsNotUsedWithoutAWord) {
   }
 }
 
+TEST(DecodeImageFile, ACompressedTiffWithADamagedMiddleIsNotUsed) {
+  const TempDir dir;
+  cv::RNG random(4);
+  for (const int compression : {5, 8}) {  // LZW, Deflate
+    std::vector<std::uint8_t> whole;
+    cv::imencode(".tif", PictureOfNoise(160, 120), whole,
+                 {cv::IMWRITE_TIFF_COMPRESSION, compression});
+    int num_noticed = 0;
+    for (int i = 0; i < 20; ++i) {
+      std::vector<std::uint8_t> bytes = whole;
+      const std::size_t begin = whole.size() * (20 + i) / 60;
+      for (std::size_t at = begin; at < begin + 400; ++at) {
+        bytes[at] = static_cast<std::uint8_t>(random.uniform(0, 256));
+      }
+      WriteBytes(dir / "a.tif", bytes);
+      std::string reason;
+      num_noticed += DecodeImageFile(dir / "a.tif", &reason).empty();
+    }
+    EXPECT_GE(num_noticed, 18) << compression;
+  }
+}
+
 TEST(DecodeImageFile, PaddingBeforeTheEndOfAJpegIsNoDamage) {
   const TempDir dir;
   std::vector<std::uint8_t> whole;

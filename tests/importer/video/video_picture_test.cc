@@ -15,16 +15,17 @@ namespace {
 constexpr int kWidth = 70, kHeight = 50;
 
 // Fills the three planes of an 8-bit picture whose chroma has half the resolution.
-VideoPicture MakePicture(int format, const std::function<int(int plane, int x, int y)>& value) {
+VideoPicture MakePicture(int format, const std::function<int(int plane, int x, int y)>& value,
+                         const cv::Size& size = {kWidth, kHeight}) {
   AVFrame* frame = av_frame_alloc();
-  frame->width = kWidth;
-  frame->height = kHeight;
+  frame->width = size.width;
+  frame->height = size.height;
   frame->format = format;
   EXPECT_EQ(av_frame_get_buffer(frame, 0), 0);
   for (int plane = 0; plane < 3; ++plane) {
     const int scale = plane == 0 ? 1 : 2;
-    for (int y = 0; y < kHeight / scale; ++y) {
-      for (int x = 0; x < kWidth / scale; ++x) {
+    for (int y = 0; y < size.height / scale; ++y) {
+      for (int x = 0; x < size.width / scale; ++x) {
         frame->data[plane][y * frame->linesize[plane] + x] =
             static_cast<std::uint8_t>(value(plane, x, y));
       }
@@ -87,6 +88,12 @@ TEST(VideoPicture, ChromaAndGrayAreTheColors) {
   }
   EXPECT_FALSE(
       MakePicture(AV_PIX_FMT_YUV420P10LE, [](int, int, int) { return 0; }).HalfSizeChroma());
+  for (const cv::Size size : {cv::Size(kWidth - 1, kHeight), cv::Size(kWidth, kHeight - 1)}) {
+    const VideoPicture odd = MakePicture(
+        AV_PIX_FMT_YUV420P, [](int, int, int) { return 99; }, size);
+    EXPECT_EQ(odd.Gray().size(), size);
+    EXPECT_FALSE(odd.HalfSizeChroma());
+  }
 }
 
 TEST(VideoPicture, SinglePixelsHaveTheColorsOfTheWholePicture) {
