@@ -124,7 +124,7 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
             has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
         {left, bottom - 4.4}, TextAnchor::kStart, true, kBlack, width);
   write(
-      "If it is not, print again at 100 %. If that does not help, measure the black squares and "
+      "If not, print again at 100 %. If that does not help, measure the black squares and "
       "write their side, in m, as marker_length into layout.yml.",
       {left, bottom - 0.4}, TextAnchor::kStart, false, kBlack, width);
   return drawing;

@@ -29,7 +29,7 @@ block_import_speed() {
 }
 
 block_detection() {
-  echo "Made by $(made_by detection.csv); least and most of the runs, ratios of the least:"
+  echo "Made by $(made_by detection.csv); minimum to maximum over the runs, ratios of the minima:"
   echo
   echo "| clip | velamap, CPU s | markers | OpenCV's loop, CPU s | markers | decoding, CPU s | OpenCV / velamap | decoding / velamap |"
   echo "|---|---|---|---|---|---|---|---|"
@@ -47,7 +47,7 @@ block_detection() {
 }
 
 block_adjustment() {
-  echo "Made by $(made_by adjustment.csv); least and most of the runs, ratios of the least:"
+  echo "Made by $(made_by adjustment.csv); minimum to maximum over the runs, ratios of the minima:"
   echo
   echo "| frames | markers | registration and adjustment, CPU s | COLMAP's adjustment, CPU s | velamap / COLMAP |"
   echo "|---|---|---|---|---|"
@@ -63,7 +63,7 @@ block_adjustment() {
 }
 
 block_main() {
-  echo "Made by $(made_by main.csv); least and most of the runs, the ratio of the least:"
+  echo "Made by $(made_by main.csv); minimum to maximum over the runs, ratio of the minima:"
   echo
   echo "| clip | automatic_reconstructor, CPU s | decoding, CPU s | ratio | import | register | adjust | export | report |"
   echo "|---|---|---|---|---|---|---|---|---|"
@@ -91,7 +91,7 @@ block_memory() {
 }
 
 block_growth() {
-  echo "Made by $(made_by growth.csv); least and most of the runs, the ratio of the least:"
+  echo "Made by $(made_by growth.csv); minimum to maximum over the runs, ratio of the minima:"
   echo
   echo "| clip | CPU s | CPU s with twice the frames | ratio |"
   echo "|---|---|---|---|"
@@ -129,7 +129,7 @@ block_tracking() {
 }
 
 block_sweep() {
-  echo "Made by $(made_by sweep.csv); least and most of the runs:"
+  echo "Made by $(made_by sweep.csv); minimum to maximum over the runs:"
   echo
   echo "| clip | central frames | single runs, CPU s | sweep with cold starts, CPU s | sweep, CPU s |"
   echo "|---|---|---|---|---|"

@@ -45,8 +45,8 @@ CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
              Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                                  "table of all central frames, CSV")),
              Common({"central_frames", &sweep->central_frames, "all|every:N|LIST",
-                     "central frames: of all images with markers, of every N-th, or names or frame "
-                     "numbers with commas"}),
+                     "central frames: all images with markers, every N-th of them, or names or "
+                     "frame numbers separated by commas"}),
              Common(PathOption(
                  "models_path", PathUse::kAddsToFolder, &sweep->models_path,
                  "folder for the metric model, shape.csv and shape.json of each central frame, in "

@@ -108,7 +108,7 @@ OptionGroup OutputGroup(ShapeComparerCommandOptions* options) {
 
 CommandSyntax Declare(ShapeComparerCommandOptions* options) {
   return {"shape_comparer",
-          "compares shapes with another one or with the surface of a design",
+          "compares shapes with another shape or with the surface of a design",
           "--shape_path trim2/shape --series_paths trim3/shape,trim4/shape --reference_path "
           "trim1/shape --layout_path layout.yml --comparison_path comparison",
           {InputGroup(options), AlignmentGroup(&options->comparison.alignment),

@@ -17,7 +17,7 @@ Command Version() {
     }
   };
   return {{"version",
-           "versions of velamap and of what it works with",
+           "versions of velamap and of the libraries and programs that it uses",
            "--colmap_path /usr/bin/colmap",
            {{"Options", {Common(ColmapPathOption(options.get()))}}}},
           run};

@@ -267,7 +267,8 @@ OptionGroup ProjectGroup(std::string* project_path) {
           {Common(PathOption(
               kProjectPath, PathUse::kReadsFile, project_path,
               "ini file with the same options, of this and other commands; the command "
-              "line takes precedence, and options without effect are refused only there"))}};
+              "line takes precedence; an option without effect is an error there and "
+              "ignored in this file"))}};
 }
 
 std::set<std::string> OptionNames(const CommandSyntax& syntax) {
