@@ -81,19 +81,15 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
                                           MapJacobian(*this, jacobians, 2)};
   const double scale = 1.0 + parameters[1][0] + parameters[2][0];
   by_marker.setZero();
-  for (JacobianMap& by_scale : by_scales) by_scale.setZero();
   for (int i = 0; i < num_sides; ++i) {
     const auto [a, b] = sides_[i];
     const Eigen::Vector3d side = CornerOfBlock(parameters[0], b) - CornerOfBlock(parameters[0], a);
     const double length_m = side.norm();
-    residuals[i] = (length_m - scale * prior_.length_m) / prior_.side_sigma_m;
+    residuals[i] = length_m / prior_.side_sigma_m;
     if (by_marker.rows() > 0) {
       const Eigen::RowVector3d direction = side.transpose() / (length_m * prior_.side_sigma_m);
       by_marker.block<1, 3>(i, 3 * a) = -direction;
       by_marker.block<1, 3>(i, 3 * b) = direction;
-    }
-    for (JacobianMap& by_scale : by_scales) {
-      if (by_scale.rows() > 0) by_scale(i, 0) = -prior_.length_m / prior_.side_sigma_m;
     }
   }
   if (has_diagonals_) {
@@ -104,6 +100,13 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
     const int row = num_residuals() - 1;
     residuals[row] = EvaluateFlatness(parameters[0], prior_.flatness_sigma_m, row, &by_marker);
   }
+  Eigen::Map<Eigen::VectorXd> all(residuals, num_residuals());
+  all /= scale;
+  by_marker /= scale;
+  for (JacobianMap& by_scale : by_scales) {
+    if (by_scale.rows() > 0) by_scale = -all / scale;
+  }
+  all.head(num_sides).array() -= prior_.length_m / prior_.side_sigma_m;
   return true;
 }
 

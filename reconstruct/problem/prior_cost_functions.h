@@ -19,11 +19,13 @@ struct MarkerPrior {
   double flatness_sigma_m = 0.0;   // of a corner's distance from the plane of the marker
 };
 
-// Residuals of a marker against its prior: sides between neighbouring corners minus (1 + print
-// scale + part scale) * length; for a marker with four corners also the difference of the
+// Residuals of a marker, divided by 1 + print scale + part scale, against its prior: sides between
+// neighbouring corners minus the length; for a marker with four corners also the difference of the
 // diagonals, and the distance h of the corners from their best plane (h, -h, h, -h for corners 1 to
 // 4). Without the diagonals a square could become a rhombus, which a single view cannot tell from a
-// tilted square. `corners` are 1..4, ascending. Blocks: marker, print scale, part scale.
+// tilted square. If the scale multiplied the length instead, a smaller model would have smaller
+// residuals, and scales that are free would shrink it. `corners` are 1..4, ascending. Blocks:
+// marker, print scale, part scale.
 class MarkerPriorError : public ceres::CostFunction {
  public:
   MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners);

@@ -20,7 +20,7 @@ double MetresPerUnit(const MarkerState& state);
 struct MarkerSizeVerdict {
   std::set<int> contradicting;   // marker ids
   double print_tolerance = 0.0;  // the given one, or a larger one if the markers scatter more
-  // 1 sigma of the parts' scales around their mean, as a fraction; 0 if the parts agree.
+  // PartsVerdict::scale_sigma.
   double part_scale_sigma = 0.0;
   std::string part_disagreement;  // "sail and hull disagree by ..."; empty if the parts agree
   std::vector<std::string> warnings;

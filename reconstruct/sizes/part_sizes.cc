@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include <fmt/format.h>
 
 namespace velamap {
@@ -67,6 +69,14 @@ PartDifference CompareWithOthers(const std::vector<PartSize>& parts, std::size_t
   return {parts[idx].ratio / ratio - 1.0, std::sqrt(variance + by_factor.squaredNorm())};
 }
 
+// The scatter of few parts is uncertain itself: half the width of the interval that holds 68 % of
+// Student's t, 1.84 for two parts.
+double FactorOfFew(std::size_t num_parts) {
+  constexpr double kBelowOneSigma = 0.841344746;
+  const boost::math::students_t distribution(static_cast<double>(num_parts) - 1.0);
+  return boost::math::quantile(distribution, kBelowOneSigma);
+}
+
 std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx,
                              const PartDifference& difference) {
   const std::string others = parts.size() == 2 ? parts[1 - idx].part : "the other parts";
@@ -100,7 +110,8 @@ PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_toler
       [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });
   if (worst->Sigmas() <= kMaxSizeSigmas || std::abs(worst->value) <= print_scale_sigma) return {};
   const auto idx = static_cast<std::size_t>(worst - differences.begin());
-  return {std::sqrt(std::max(scatter - noise, 0.0)), DisagreementText(parts, idx, *worst)};
+  return {FactorOfFew(parts.size()) * std::sqrt(std::max(scatter - noise, 0.0)),
+          DisagreementText(parts, idx, *worst)};
 }
 
 }  // namespace velamap

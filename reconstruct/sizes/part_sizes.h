@@ -10,7 +10,8 @@
 namespace velamap {
 
 struct PartsVerdict {
-  // 1 sigma of the parts' scales around their mean, as a fraction; 0 if the parts agree.
+  // 1 sigma of the scale, as a fraction, if the parts disagree, from how far they are from each
+  // other; 0 if they agree.
   double scale_sigma = 0.0;
   std::string disagreement;  // "sail and hull disagree by ..."; empty if the parts agree
 };

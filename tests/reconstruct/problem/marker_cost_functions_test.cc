@@ -170,10 +170,10 @@ TEST(MarkerPriorError, KnowsSidesAndFlatness) {
   double residuals[6];
   ASSERT_TRUE(error.Evaluate(blocks, residuals, nullptr));
   for (int side = 0; side < 4; ++side) {
-    EXPECT_NEAR(residuals[side], (std::hypot(0.1, 2 * h) - 0.102) / 1e-3, 1e-12);
+    EXPECT_NEAR(residuals[side], (std::hypot(0.1, 2 * h) / 1.02 - 0.1) / 1e-3, 1e-12);
   }
   EXPECT_NEAR(residuals[4], 0.0, 1e-12);
-  EXPECT_NEAR(std::abs(residuals[5]), h / 2e-3, 1e-12);
+  EXPECT_NEAR(std::abs(residuals[5]), h / 1.02 / 2e-3, 1e-12);
 }
 
 TEST(MarkerPriorError, RhombusIsNoSquare) {
