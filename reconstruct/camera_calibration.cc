@@ -35,27 +35,35 @@ void CheckOneCamera(const std::map<CameraId, Camera>& guesses) {
   }
 }
 
-// Throws DataError if the board is in the same place in all pictures.
+// Throws DataError if no part of the board is in two pictures, or none moves between them.
 void CheckMovement(const std::vector<DatabaseImage>& images, const Camera& guess) {
   constexpr double kLeastMovement = 0.03;  // of the larger side
+  constexpr char kRemedy[] =
+      "move the board through the whole picture, near and far, and tilt it by 30 to 45 degrees to "
+      "all sides";
   std::map<CornerId, Eigen::AlignedBox2d> places_px;
+  std::set<CornerId> seen_twice;
   for (const DatabaseImage& image : images) {
     for (const MarkerDetection& marker : image.detections.markers) {
       for (int c = 1; c <= kNumCorners; ++c) {
-        places_px[{marker.marker_id, c}].extend(
-            marker.corners_in_image_px[static_cast<std::size_t>(c) - 1]);
+        const CornerId corner_id{marker.marker_id, c};
+        const auto [place, is_new] = places_px.try_emplace(corner_id);
+        if (!is_new) seen_twice.insert(corner_id);
+        place->second.extend(marker.corners_in_image_px[static_cast<std::size_t>(c) - 1]);
       }
     }
+  }
+  if (seen_twice.empty()) {
+    throw DataError(fmt::format("no marker is in two of the pictures, of which {} can be used; {}",
+                                images.size(), kRemedy));
   }
   double largest_px = 0.0;
   for (const auto& [corner_id, box] : places_px) {
     largest_px = std::max(largest_px, box.diagonal().norm());
   }
   if (largest_px >= kLeastMovement * std::max(guess.width_px, guess.height_px)) return;
-  throw DataError(fmt::format(
-      "all {} pictures are alike: nothing moves by more than {:.0f} px; move the board through the "
-      "whole picture, near and far, and tilt it by 30 to 45 degrees to all sides",
-      images.size(), largest_px));
+  throw DataError(fmt::format("all {} pictures are alike: nothing moves by more than {:.0f} px; {}",
+                              images.size(), largest_px, kRemedy));
 }
 
 // The images with the corners in the pixels of the first camera: pictures of the rotated camera are

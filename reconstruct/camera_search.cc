@@ -195,6 +195,7 @@ class CameraSearch {
     constexpr int kMaxNumFrames = 40;
     registration_.method = RegistrationMethod::kGlobal;
     registration_.has_calibration = false;
+    registration_.central_frame.clear();  // a wrong camera may not register it
     registration_.global.max_num_frames =
         std::min(registration.global.max_num_frames, kMaxNumFrames);
   }

@@ -12,9 +12,9 @@ namespace velamap {
 // tangential distortion. The linearized adjustment absorbs as much of each warp as poses and shape
 // can; the rest is fitted to all residuals. These include the sides of the markers, which a wrong
 // calibration makes too long near the centre and too short near the border, or the other way round.
-// Warps that the adjustment itself refines are not tested. For several cameras, returns the
-// strongest evidence. `linearization` is that of the solution `model`, with calibrated sigmas that
-// contain the correlation of errors.
+// Of warps that the adjustment refines, only what their prior holds back is tested. For several
+// cameras, returns the strongest evidence. `linearization` is that of the solution `model`, with
+// calibrated sigmas that contain the correlation of errors.
 CalibrationEvidence TestCalibration(const Model& model, const MarkerLinearization& linearization);
 
 }  // namespace velamap

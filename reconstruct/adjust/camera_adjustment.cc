@@ -130,6 +130,10 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model model, FocalStep step) {
   constexpr double kMinChange = 0.01, kMinSigmas = 10.0;
+  const TurnedCameras turned = TieTurnedCameras(&model);
+  if (const auto found = turned.cameras.find(step.camera_id); found != turned.cameras.end()) {
+    step.camera_id = found->second.upright_id;
+  }
   const CameraId second_id = model.cameras.rbegin()->first + 1;
   model.cameras[second_id] = model.cameras.at(step.camera_id);
   for (ModelImage& image : model.images) {
@@ -158,9 +162,11 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step) {
-  if (!step || step->IsCertain()) return step;
-  if (!step->IsSuspicious() || seed == nullptr) return std::nullopt;
-  return MeasureFocalStep(options, layout, corner_errors, *seed, *step);
+  if (!step || !step->IsSuspicious()) return std::nullopt;  // a certain step is suspicious as well
+  const std::optional<FocalStep> unmeasured = step->IsCertain() ? step : std::nullopt;
+  if (seed == nullptr) return unmeasured;
+  const auto measured = MeasureFocalStep(options, layout, corner_errors, *seed, *step);
+  return measured ? measured : unmeasured;
 }
 
 }  // namespace velamap

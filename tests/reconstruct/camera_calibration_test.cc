@@ -197,6 +197,8 @@ TEST(CameraCalibration, PicturesThatAreAlikeAreRefused) {
     images.back().detections.image_name += std::to_string(id);
   }
   ExpectThrows<DataError>([&] { Calibrate(images); }, {"all 10 pictures are alike"});
+  images.resize(1);
+  ExpectThrows<DataError>([&] { Calibrate(images); }, {"no marker is in two of the pictures"});
 }
 
 TEST(CameraCalibration, AZoomInTheMiddleIsRefused) {

@@ -171,6 +171,45 @@ TEST(CameraSearch, ASmallZoomIsMeasuredByTwoCameras) {
   }
 }
 
+// The points hide part of a zoom, so that only two cameras tell how large a certain one is. A
+// camera that was held upright for every second picture has zoomed as well.
+TEST(CameraSearch, ALargeZoomIsMeasuredInPortraitAndLandscape) {
+  const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 960, 540, 0}};
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
+  for (const bool has_portraits : {false, true}) {
+    std::vector<DatabaseImage> images = DatabaseImages(scene);
+    std::map<CameraId, Camera> cameras = {{1, truth}};
+    if (has_portraits) cameras[2] = TurnCamera(truth, 1);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const bool is_portrait = has_portraits && i % 2 == 0;
+      if (is_portrait) images[i].camera_id = 2;
+      for (MarkerDetection& marker : images[i].detections.markers) {
+        for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
+          const double zoom = i < 8 ? 1.0 : 1.1;
+          corner = Eigen::Vector2d(960, 540) + zoom * (corner - Eigen::Vector2d(960, 540));
+          if (is_portrait) corner = TurnInImage(truth, 1, corner);
+        }
+      }
+    }
+    const Registration registration = RegisterFrames(images, cameras, scene.layout, {});
+    const Model model = MakeSeedModel(registration, images, cameras);
+    FocalStep found;  // as a model with one camera shows it
+    found.first_image_after = images[8].detections.image_name;
+    found.camera_id = images[8].camera_id;
+    found.before_px = 1500;
+    found.after_px = 1540;
+    found.sigmas = 20;
+    ASSERT_TRUE(found.IsCertain() && !found.SpoilsShape());
+    const auto step = ConfirmFocalStep({}, scene.layout, CornerErrorsOf(images), &model, found);
+    ASSERT_TRUE(step.has_value());
+    EXPECT_NEAR(step->after_px / step->before_px, 1.1, 0.005) << has_portraits;
+    EXPECT_TRUE(step->SpoilsShape());
+    const auto unmeasured =
+        ConfirmFocalStep({}, scene.layout, CornerErrorsOf(images), nullptr, found);
+    EXPECT_EQ(unmeasured->after_px, 1540);
+  }
+}
+
 TEST(CameraSearch, ABoardSeenHeadOnIsRefused) {
   // Moved in front of the camera without tilt: focal length and distance stand in for each other.
   const Camera truth{CameraModel::kPinhole, 1920, 1080, {1500, 1500, 960, 540}};
