@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -30,10 +31,6 @@ constexpr double kMaxGap = 3.6;
 
 bool FaceTheSameWay(const OrientedMarker& a, const OrientedMarker& b) {
   return a.normal.dot(b.normal) > kSameFace;
-}
-
-double Bend(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return std::acos(std::clamp(from.normalized().dot(to.normalized()), -1.0, 1.0));
 }
 
 bool AreLike(double a, double b) { return std::max(a, b) < kMaxStepRatio * std::min(a, b); }
@@ -117,7 +114,7 @@ class Linker {
       for (std::size_t j = i + 1; j < links.size(); ++j) {
         const Eigen::Vector3d in = Between(OtherEnd(links[i], marker), marker);
         const Eigen::Vector3d out = Between(marker, OtherEnd(links[j], marker));
-        const double bend = Bend(in, out);
+        const double bend = AngleBetween(in, out);
         if (bend > kMaxBend || !AreLike(in.norm(), out.norm())) continue;
         candidates.push_back({bend, links[i], links[j]});
       }
@@ -186,10 +183,10 @@ std::optional<double> BendAtGap(const std::vector<OrientedMarker>& markers, cons
   if (IsBeside(markers[a[a.size() - 2]], markers[a.back()], markers[b.front()])) {
     return std::nullopt;
   }
-  double bend = Bend(markers[a.back()].center_m - markers[a[a.size() - 2]].center_m, gap);
+  double bend = AngleBetween(markers[a.back()].center_m - markers[a[a.size() - 2]].center_m, gap);
   if (b.size() > 1) {
     if (!AreLike(step, StepOf(markers, b))) return std::nullopt;
-    bend = std::max(bend, Bend(gap, markers[b[1]].center_m - markers[b.front()].center_m));
+    bend = std::max(bend, AngleBetween(gap, markers[b[1]].center_m - markers[b.front()].center_m));
   }
   if (bend > kMaxBendAtGap) return std::nullopt;
   return bend;

@@ -6,6 +6,7 @@
 
 #include "importer/base/parallel.h"
 #include "importer/camera/camera_jacobian.h"
+#include "importer/geometry/quad.h"
 #include "reconstruct/geometry/marker_pose.h"
 
 namespace velamap {
@@ -37,8 +38,8 @@ std::optional<MapObservation> Observe(const MarkerDetection& detection, const Ca
     observation.rays[i] = *ray;
     observation.px_from_ray[i] =
         ImageFromRayWithJacobian(camera.model, camera.params.data(), *ray).by_ray;
-    observation.side_px += (corners_px[(i + 1) % kNumCorners] - corners_px[i]).norm() / kNumCorners;
   }
+  observation.side_px = QuadMeanSide(corners_px);
   const auto poses = EstimateMarkerPoses(camera, corners_px, length_m);
   if (poses.empty()) return std::nullopt;
   for (const MarkerPose& pose : poses) {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/map/map_adjustment.h"
@@ -21,16 +22,14 @@ constexpr double kFullParallax = 20 * kRadPerDeg;
 // Angle between the directions from which two frames see a marker, rad; the smallest over the
 // combinations of their planar solutions.
 double Parallax(const MapObservation& a, const MapObservation& b) {
-  double largest_cosine = -1.0;
+  double smallest = kPi;
   for (const Rigid3& a_from_marker : a.cam_from_marker) {
     for (const Rigid3& b_from_marker : b.cam_from_marker) {
-      largest_cosine =
-          std::max(largest_cosine, Inverse(a_from_marker)
-                                       .translation.normalized()
-                                       .dot(Inverse(b_from_marker).translation.normalized()));
+      smallest = std::min(smallest, AngleBetween(Inverse(a_from_marker).translation,
+                                                 Inverse(b_from_marker).translation));
     }
   }
-  return std::acos(std::clamp(largest_cosine, -1.0, 1.0));
+  return smallest;
 }
 
 double PairScore(const MapProblem& problem, int frame_idx1, int frame_idx2, int min_num_shared) {
