@@ -190,6 +190,17 @@ std::vector<BadInput> Exports() {
        "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
        "--alicevision 1",
        2, "--alicevision: it would change nothing"},
+      {"AScaleOfAMetricModel", call + "--scale_by mean_side", 2,
+       "--scale_by: it would change nothing"},
+      {"AShutterWithoutFrames",
+       "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/workspace/sparse/0 "
+       "--output_path @/new --MarkerAdjustment.rolling_shutter 0.02",
+       2, "--MarkerAdjustment.rolling_shutter: it would change nothing"},
+      {"AnUnknownCameraThatIsHeld",
+       "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/workspace/sparse/0 "
+       "--output_path @/new --MarkerAdjustment.find_camera 1 --MarkerAdjustment.intrinsics_sigma "
+       "0.001",
+       2, "--MarkerAdjustment.intrinsics_sigma: it would change nothing"},
       {"HeightsThatAreNone", call + "--Section.heights 1,b", 2, "--Section.heights: '1,b'"},
       {"AnEdgeOfOnePoint", call + "--Surface.edges_path @/bad.csv", 2, "one point",
        Write("bad.csv", "edge,x,y,z\nluff,0,0,0\n")},

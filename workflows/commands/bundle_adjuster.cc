@@ -86,7 +86,9 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
 // uncertainty.
 CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layout& layout,
                          AdjustmentOptions* adjustment, Model* model) {
-  if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
+  if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) {
+    return CornerErrorsOf({});
+  }
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
   CheckLayoutOfDatabase(database, options.paths.database_path, layout);
   const std::vector<DatabaseImage> images = database.ReadImages();
@@ -98,6 +100,18 @@ CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layo
     adjustment->markers.find_camera = true;
   }
   return CornerErrorsOf(images, database.ReadFormation());
+}
+
+void RefuseOptionsWithoutData(const BundleAdjusterCommandOptions& options,
+                              const AdjustmentOptions& adjustment,
+                              const CornerErrors& corner_errors) {
+  if (adjustment.markers.find_camera) RefuseOptionsOfKnownCamera(options.typed);
+  if (corner_errors.velocities_px_s.empty()) {
+    RefuseOptionsWithoutEffect(
+        options.typed,
+        {"MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"},
+        "no --database_path with the frames of a video says how fast the corners move");
+  }
 }
 
 void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {
@@ -125,6 +139,7 @@ void Run(const BundleAdjusterCommandOptions& options) {
   Model model = ReadModel(options.paths.input_path);
   AdjustmentOptions adjustment = options.adjustment;
   const CornerErrors corner_errors = LoadCorners(options, layout, &adjustment, &model);
+  RefuseOptionsWithoutData(options, adjustment, corner_errors);
   const AdjustmentResult result =
       AdjustModel(adjustment, layout, corner_errors, options.paths.log_path, &model);
   clock.End("adjust", static_cast<int>(model.images.size()));

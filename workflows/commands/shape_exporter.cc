@@ -97,6 +97,11 @@ void Run(const ShapeExporterCommandOptions& options) {
   const Model model = ReadModel(options.paths.input_path);
   const std::optional<AdjustmentUncertainty> uncertainty =
       ReadUncertaintyOf(model, options.paths.input_path);
+  if (uncertainty) {
+    RefuseOptionsWithoutEffect(options.typed, {"scale_by"},
+                               "the model in --input_path " + options.paths.input_path +
+                                   " is metric already, from an adjustment with markers");
+  }
   const ShapeExportReport report =
       ComputeShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
   report.ThrowSurfaceErrorBeforeReplacing({options.paths.output_path, options.paths.shape_path});

@@ -107,6 +107,15 @@ void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
       name, missing, name));
 }
 
+void RefuseOptionsOfKnownCamera(const TypedNames& typed) {
+  RefuseOptionsWithoutEffect(
+      typed,
+      {"BundleAdjustment.refine_focal_length", "BundleAdjustment.refine_principal_point",
+       "BundleAdjustment.refine_extra_params", "MarkerAdjustment.refine_calibration",
+       "MarkerAdjustment.intrinsics_sigma"},
+      "the camera is unknown, and all of its parameters are refined");
+}
+
 void RefuseSailOptions(const TypedNames& typed, const Layout& layout) {
   if (FirstPartWithLines(layout) != nullptr) return;
   RefuseOptionsWithoutEffect(

@@ -36,6 +36,10 @@ void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
                                          const MarkerAdjustmentOptions& adjustment,
                                          const std::string& missing);
 
+// Refuses options that fix or free parameters of the camera, all of which are free if it is
+// unknown.
+void RefuseOptionsOfKnownCamera(const TypedNames& typed);
+
 // Refuses options of sections and of a sail's surface where the layout has no part with lines.
 void RefuseSailOptions(const TypedNames& typed, const Layout& layout);
 

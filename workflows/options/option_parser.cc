@@ -263,12 +263,12 @@ void AddPreset(const CommandSyntax& syntax, const OptionsByName& options, GivenV
 }  // namespace
 
 OptionGroup ProjectGroup(std::string* project_path) {
-  return {"Project file",
-          {Common(PathOption(
-              kProjectPath, PathUse::kReadsFile, project_path,
-              "ini file with the same options, of this and other commands; the command "
-              "line takes precedence; an option without effect is an error there and "
-              "ignored in this file"))}};
+  return {
+      "Project file",
+      {Common(PathOption(kProjectPath, PathUse::kReadsFile, project_path,
+                         "ini file with the same options, of this and other commands; the command "
+                         "line takes precedence; an option without effect is an error there and "
+                         "ignored in this file"))}};
 }
 
 std::set<std::string> OptionNames(const CommandSyntax& syntax) {

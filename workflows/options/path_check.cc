@@ -59,9 +59,9 @@ fs::path DefaultPath(const Option& option) {
 
 // Comparisons also read the uncertainty of the model beside a folder of a shape.
 void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
-  if (!IsFolder(path)) return paths->inputs.push_back({used_by, path});
-  paths->inputs.push_back({used_by, path / "shape.csv"});
-  AddModelFiles(used_by, AbsoluteFolder(path).parent_path() / "sparse" / "0", paths);
+  const fs::path file = IsFolder(path) ? path / "shape.csv" : path;
+  paths->inputs.push_back({used_by, file});
+  AddModelFiles(used_by, AbsolutePath(file).parent_path().parent_path() / "sparse" / "0", paths);
 }
 
 void AddUse(PathUse use, const std::string& used_by, const std::string& path, bool is_default_name,

@@ -38,6 +38,21 @@ TEST(OptionEffectsTest, PhotographsAreNoVideo) {
   }
 }
 
+TEST(OptionEffectsTest, AnUnknownCameraIsRefinedWhateverTheOptions) {
+  AdjustmentOptions options;
+  std::vector<Option> all = DescribeOptions(&options.markers).options;
+  for (const Option& option : DescribeOptions(&options.colmap).options) all.push_back(option);
+  const auto is_refused = [](const Option& option) {
+    try {
+      RefuseOptionsOfKnownCamera({option.name});
+      return false;
+    } catch (const InputError&) {
+      return true;
+    }
+  };
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), is_refused), 5);
+}
+
 TEST(OptionEffectsTest, EachBackendHasItsOptions) {
   const auto refuse = [](const std::string& name, AdjustmentBackend backend) {
     RefuseOptionsOfOtherBackend({name}, backend);
