@@ -93,8 +93,10 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
     WriteFile(folder / "alicevision.sfm",
               [&](std::ostream& out) { WriteAliceVisionScene(report.metric_model, out); });
   }
-  WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
-  WriteFreeformFiles(report.freeform, report.frame, options.files.unit, folder);
+  SailFileOptions files = options.files;
+  files.ply_format = format;
+  WriteSailFiles(report.sail, report.shape, report.frame, files, folder);
+  WriteFreeformFiles(report.freeform, report.frame, files.unit, format, folder);
   // The last one, because it lists the others.
   const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit);
   WriteFile(folder / "shape.json", [&](std::ostream& out) {

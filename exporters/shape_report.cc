@@ -19,13 +19,6 @@ void Append(const Metrics& metrics, MetricsReport* report) {
   report->metrics.insert(report->metrics.end(), metrics.begin(), metrics.end());
 }
 
-void AddEstimate(const std::string& name, const std::string& unit,
-                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
-  if (!estimate) return;
-  metrics->push_back({name + '_' + unit, factor * estimate->value});
-  if (estimate->sigma) metrics->push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
-}
-
 MetricTable RigTable(const std::vector<RigNumbers>& rigs) {
   MetricTable table{"rigs", true, {}};
   for (const RigNumbers& rig : rigs) {
@@ -43,6 +36,13 @@ void AppendTexts(const char* key, const std::vector<std::string>& texts, Metrics
 }
 
 }  // namespace
+
+void AddEstimate(const std::string& name, const std::string& unit,
+                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
+  if (!estimate) return;
+  metrics->push_back({name + '_' + unit, factor * estimate->value});
+  if (estimate->sigma) metrics->push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
+}
 
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report) {
   Append({{"frame_name", frame.name}, {"frame_description", frame.description}}, report);

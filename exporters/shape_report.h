@@ -20,6 +20,10 @@ namespace velamap {
 
 // Keys of sigmas exist if the sigmas are known.
 
+// Adds NAME_UNIT and NAME_sigma_UNIT, both times `factor`.
+void AddEstimate(const std::string& name, const std::string& unit,
+                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics);
+
 // Adds frame_name, frame_description, frame_reasons.
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
 

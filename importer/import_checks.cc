@@ -19,7 +19,6 @@
 #include "importer/frame_camera.h"
 #include "importer/video/frame_source.h"
 #include "importer/video/source_file.h"
-#include "importer/video/video_decoder.h"
 #include "importer/video/written_frame.h"
 
 namespace velamap {
@@ -202,8 +201,8 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
 
 void CheckPixelAspect(const MarkerImporterOptions& options) {
   constexpr double kTolerance = 0.01;  // rounded ratios such as 4320:4319 mean square pixels
-  if (options.camera || IsFolder(options.image_path)) return;
-  const double pixel_aspect = VideoDecoder(options.image_path, 1).PixelAspect();
+  if (options.camera) return;
+  const double pixel_aspect = PixelAspect(options.image_path);
   if (std::abs(pixel_aspect - 1) < kTolerance) return;
   throw InputError(fmt::format(
       "{}: its pixels are {:.3f} times as wide as high, and without a calibration they are taken "

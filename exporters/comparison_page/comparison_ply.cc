@@ -16,6 +16,8 @@
 namespace velamap {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 struct Vertex {
   Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -92,8 +94,8 @@ void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> c
     vertex.normal = MarkerNormal(*marker);
     vertex.color = DivergingColor(
         compared.is_over_surface ? std::optional(compared.distance_m) : std::nullopt, limit_m);
-    vertex.distance_m = compared.distance_m;
-    vertex.sigma_m = compared.sigma_m.value_or(0.0);
+    vertex.distance_m = compared.is_over_surface ? compared.distance_m : kUnknown;
+    vertex.sigma_m = compared.is_over_surface ? compared.sigma_m.value_or(0.0) : kUnknown;
     vertex.marker_id = compared.marker_id;
     // Corners 1..4 run clockwise seen from the front; a face runs the other way.
     const int first = static_cast<int>(vertices.rows.size());
@@ -111,7 +113,6 @@ void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> c
 
 void WriteComparisonSurfacePly(const SurfaceComparison& comparison,
                                std::optional<double> color_limit_m, std::ostream& out) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const double limit_m = color_limit_m.value_or(LargestDistance(comparison));
   PlyElement<Vertex> vertices{"vertex", {}, {}};
   AddPosition(&vertices);

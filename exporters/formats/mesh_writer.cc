@@ -32,7 +32,8 @@ std::string HeaderStart(LengthUnit unit) {
 
 }  // namespace
 
-void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostream& out) {
+void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, PlyFormat format,
+                  std::ostream& out) {
   PlyElement<int> vertices{"vertex", Indices(mesh.vertices_m.size()), {}};
   const auto add = [&vertices](const auto& values, PlyType type,
                                const std::vector<std::string>& names) {
@@ -51,8 +52,7 @@ void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostrea
   faces.AddList("vertex_indices", PlyType::kInt, 3, [&mesh](int face, int i) {
     return mesh.triangles[static_cast<std::size_t>(face)][static_cast<std::size_t>(i)];
   });
-  WritePly(PlyFormat::kBinaryLittleEndian, {"velamap surface of " + name + ", unit m"}, out,
-           vertices, faces);
+  WritePly(format, {"velamap surface of " + name + ", unit m"}, out, vertices, faces);
 }
 
 void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,

@@ -10,12 +10,14 @@
 
 #include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
+#include "exporters/formats/ply_writer.h"
 
 namespace velamap {
 
-// Binary little-endian: double x y z, float nx ny nz, float s t (u and v of the surface) and float
-// sigma if the mesh has them, and faces with vertex_indices.
-void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
+// double x y z, float nx ny nz, float s t (u and v of the surface) and float sigma if the mesh has
+// them, and faces with vertex_indices.
+void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, PlyFormat format,
+                  std::ostream& out);
 
 void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,
                   std::ostream& out);

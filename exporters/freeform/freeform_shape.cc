@@ -101,14 +101,14 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
 }
 
 void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
-                        const std::filesystem::path& folder) {
+                        PlyFormat ply_format, const std::filesystem::path& folder) {
   for (const PartSurface& part : freeform.surfaces) {
     const std::string title = fmt::format("{} (frame: {})", ShownName(part.part), frame.name);
     const auto write = [&](const std::string& extension, const auto& writer) {
       WriteFile(folder / (part.file_stem + extension), writer);
     };
     const TriangleMesh& mesh = part.surface.mesh;
-    write(".ply", [&](std::ostream& out) { WriteMeshPly(mesh, title, out); });
+    write(".ply", [&](std::ostream& out) { WriteMeshPly(mesh, title, ply_format, out); });
     write(".obj", [&](std::ostream& out) { WriteMeshObj(mesh, title, unit, out); });
     write(".stl", [&](std::ostream& out) { WriteMeshStl(mesh, title, unit, out); });
   }

@@ -10,6 +10,7 @@
 
 #include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
+#include "exporters/formats/ply_writer.h"
 #include "exporters/freeform/freeform_surface.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
@@ -50,6 +51,6 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
 // corners of all surfaces. `unit` is the unit of OBJ and STL. `folder` must exist. Throws
 // InputError if a file cannot be written.
 void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
-                        const std::filesystem::path& folder);
+                        PlyFormat ply_format, const std::filesystem::path& folder);
 
 }  // namespace velamap

@@ -90,7 +90,8 @@ void WriteSurfaceFiles(const SailSurface& surface, CadExtras extras, const std::
   const std::vector<std::pair<std::string, Writer>> files = {
       {stem + ".step", [&](std::ostream& out) { WriteStep(spline, title, out, extras); }},
       {stem + ".igs", [&](std::ostream& out) { WriteIges(spline, title, out, extras); }},
-      {stem + ".ply", [&](std::ostream& out) { WriteMeshPly(surface.mesh, title, out); }},
+      {stem + ".ply",
+       [&](std::ostream& out) { WriteMeshPly(surface.mesh, title, options.ply_format, out); }},
       {stem + ".obj",
        [&](std::ostream& out) { WriteMeshObj(surface.mesh, title, options.unit, out); }},
       {stem + ".stl",

@@ -11,6 +11,7 @@
 
 #include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
+#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/surface_grid.h"
 #include "exporters/sail/section.h"
 #include "exporters/shape/marker_shape.h"
@@ -33,6 +34,7 @@ struct SailOptions {
 struct SailFileOptions {
   LengthUnit unit = LengthUnit::kMetre;  // of the formats that name none, and of DXF
   GridOptions grid;
+  PlyFormat ply_format = PlyFormat::kBinaryLittleEndian;
 };
 
 struct SailSurface {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "importer/base/error.h"
 
@@ -36,16 +37,6 @@ Eigen::MatrixXd DerivativeProducts(const Eigen::ArrayXd& knots, int degree, int 
   return gram;
 }
 
-void AddKronecker(double factor, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
-                  Eigen::MatrixXd* sum) {
-  for (Eigen::Index i = 0; i < left.rows(); ++i) {
-    for (Eigen::Index k = 0; k < left.cols(); ++k) {
-      sum->block(i * right.rows(), k * right.cols(), right.rows(), right.cols()) +=
-          factor * left(i, k) * right;
-    }
-  }
-}
-
 // Integrals of the squared third derivatives, with u and v as lengths on the surface: those that
 // are mainly along the lines, S_uuu and S_uuv, and those mainly across them, S_uvv and S_vvv. A
 // sail is bent more along its lines than across them, so each pair has its own weight.
@@ -61,18 +52,15 @@ Penalties PenaltyMatrices(const SurfaceParameters& parameters) {
     return DerivativeProducts(parameters.knots_v, parameters.degree_v, order);
   };
   const double u_m = parameters.mean_length_u_m, v_m = parameters.length_v_m;
-  const Eigen::Index num_poles = gram_u(0).rows() * gram_v(0).rows();
-  Penalties penalties;
-  penalties.along.setZero(num_poles, num_poles);
-  penalties.across.setZero(num_poles, num_poles);
+  const auto product = [&](int order_u, int order_v) -> Eigen::MatrixXd {
+    return Eigen::kroneckerProduct(gram_u(order_u), gram_v(order_v));
+  };
   // A factor of 3, as in the square of the third differential, makes the sum of all four the same
   // in every direction of u and v.
   const double mixed = 3.0;
-  AddKronecker(v_m / std::pow(u_m, 5), gram_u(3), gram_v(0), &penalties.along);
-  AddKronecker(mixed / (std::pow(u_m, 3) * v_m), gram_u(2), gram_v(1), &penalties.along);
-  AddKronecker(mixed / (u_m * std::pow(v_m, 3)), gram_u(1), gram_v(2), &penalties.across);
-  AddKronecker(u_m / std::pow(v_m, 5), gram_u(0), gram_v(3), &penalties.across);
-  return penalties;
+  return {
+      v_m / std::pow(u_m, 5) * product(3, 0) + mixed / (std::pow(u_m, 3) * v_m) * product(2, 1),
+      mixed / (u_m * std::pow(v_m, 3)) * product(1, 2) + u_m / std::pow(v_m, 5) * product(0, 3)};
 }
 
 // N_i(u) M_j(v) for all poles.

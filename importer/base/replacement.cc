@@ -196,11 +196,14 @@ void CheckReplaceableFolder(const fs::path& path) {
   }
 }
 
+bool IsOwnFile(const fs::path& path) {
+  const std::string text = IsRegularFile(path) ? ReadBytes(path) : "";
+  return !text.empty() && BeginsAsOneOfOurs(text) && HasItsSeal(text);
+}
+
 void CheckOwnFile(const std::string& used_by, const fs::path& path) {
-  if (!IsRegularFile(path)) return;
-  const std::string text = ReadBytes(path);
-  const bool is_ours = text.empty() || BeginsAsOneOfOurs(text);
-  if (is_ours && HasItsSeal(text)) return;
+  if (!IsRegularFile(path) || FileSize(path) == 0 || IsOwnFile(path)) return;
+  const bool is_ours = BeginsAsOneOfOurs(ReadBytes(path));
   throw InputError(fmt::format(
       "{}: {} would be replaced, but {}; move it away, or choose another place", used_by,
       path.string(), is_ours ? "was changed after velamap wrote it" : "velamap did not write it"));

@@ -35,9 +35,13 @@ std::string MakeFolderRecord(const std::filesystem::path& folder);
 // missing.
 void CheckReplaceableFolder(const std::filesystem::path& path);
 
-// Throws InputError, which begins with `used_by`, if the path is a file that does not begin as one
-// of velamap's tables, pages, calibrations, proposed layouts or logs, or that was changed after
-// velamap sealed it. A layout without a seal is the user's. Nothing happens if it is missing.
+// Whether the path is a file that begins as one of velamap's tables, pages, calibrations, proposed
+// layouts or logs and was not changed after velamap sealed it. A layout without a seal is the
+// user's.
+bool IsOwnFile(const std::filesystem::path& path);
+
+// Throws InputError, which begins with `used_by`, if the path is a file with content that is not
+// velamap's own. Nothing happens if it is missing.
 void CheckOwnFile(const std::string& used_by, const std::filesystem::path& path);
 
 // `text` and a last line, a comment, with the hash of it. The line begins with `comment_begin` and

@@ -267,6 +267,10 @@ void CheckImagePath(const std::string& path) {
   }
 }
 
+double PixelAspect(const std::string& path) {
+  return IsFolder(path) ? 1.0 : VideoDecoder(path, 1).PixelAspect();
+}
+
 std::string NameOfVideoFrame(int frame_number) {
   return fmt::format("frame_{:06}.jpg", frame_number);
 }

@@ -57,6 +57,10 @@ class FrameSource {
 // Throws InputError unless `path` is a folder or a file that may be a video.
 void CheckImagePath(const std::string& path);
 
+// Width over height of a pixel, as the video says; 1 if it does not, and for a folder of images.
+// Throws InputError if FFmpeg cannot read the video.
+double PixelAspect(const std::string& path);
+
 std::string NameOfVideoFrame(int frame_number);
 
 // The number of the frame of a video that has such a name; nothing for other names.

@@ -154,6 +154,8 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
     EXPECT_EQ(ReadBytes(shape / "scale.csv"), Written(scale));
     EXPECT_EQ(ReadBytes(shape / "markers.ply"), Written(markers));
     EXPECT_EQ(ReadBytes(shape / "shape.ply"), Written(points));
+    const std::string head = ReadBytes(shape / "surface.ply").substr(0, 20);
+    EXPECT_EQ(head.find("ascii") != std::string::npos, ascii) << head;
   }
 }
 

@@ -320,7 +320,10 @@ const std::map<std::string, FuzzedReader>& FuzzedReaders() {
                }),
         UncertaintySeeds}},
       {"database", {OfFile("database.db", ReadDatabase), DatabaseSeeds}},
-      {"ply", OfMesh("mesh.ply", WriteMeshPly)},
+      {"ply", OfMesh("mesh.ply",
+                     [](const TriangleMesh& mesh, const std::string& name, std::ostream& out) {
+                       WriteMeshPly(mesh, name, PlyFormat::kBinaryLittleEndian, out);
+                     })},
       {"obj", OfMesh("mesh.obj", InMetres(WriteMeshObj))},
       {"stl", OfMesh("mesh.stl", InMetres(WriteMeshStl))},
       {"step", OfCad("mesh.step", WriteStep)},

@@ -16,6 +16,7 @@
 #include "importer/camera/calibration_writer.h"
 #include "importer/text/output_date.h"
 #include "importer/text/shown_text.h"
+#include "importer/text/text_file.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
@@ -100,6 +101,7 @@ void Validate(AutomaticReconstructorCommandOptions* options) {
     RefuseFixedCameraWithoutCalibration(options->typed, options->adjustment.markers,
                                         "--camera_path is missing");
     options->adjustment.markers.find_camera = true;
+    RefuseOptionsOfKnownCamera(options->typed);
     CheckOwnFile("--workspace_path",
                  WorkspacePaths{AbsoluteFolder(options->paths.workspace_path)}.Camera());
   }
@@ -177,6 +179,17 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   return input;
 }
 
+constexpr char kFoundBy[] = "found by velamap";
+
+// With a calibration, a camera that an earlier run has found is not that of this result. A file
+// that the user has put there stays.
+void RemoveFoundCamera(const std::string& camera_path, const WorkspacePaths& paths) {
+  const std::filesystem::path file = paths.Camera();
+  if (CanonicalPath(camera_path) == CanonicalPath(file) || !IsOwnFile(file)) return;
+  const bool is_found = ReadTextFile(file.string(), "camera").find(kFoundBy) != std::string::npos;
+  if (is_found) RemoveFileOrEmptyFolder(file);
+}
+
 // Writes the camera for its next clip. Of several cameras, the one with most images.
 void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
                       const WorkspacePaths& paths) {
@@ -191,7 +204,7 @@ void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
   }
   if (most_used == nullptr) return;
   WriteCalibration(*most_used,
-                   fmt::format("found by velamap {} from {} images of markers", kVersion, most),
+                   fmt::format("{} {} from {} images of markers", kFoundBy, kVersion, most),
                    paths.Camera().string());
 }
 
@@ -220,7 +233,11 @@ void AdjustAndExport(const AutomaticReconstructorCommandOptions& options,
   summary->verdict = MakeVerdict(input);
   WriteShape(summary->shape, exporter, &summary->verdict);
   sparse.Commit();
-  WriteFoundCamera(summary->adjustment, model, paths);
+  if (options.paths.camera_path.empty()) {
+    WriteFoundCamera(summary->adjustment, model, paths);
+  } else {
+    RemoveFoundCamera(options.paths.camera_path, paths);
+  }
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   clock->End("export");

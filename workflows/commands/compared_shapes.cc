@@ -48,8 +48,8 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   UncertainShape result;
   result.shape = ReadShapeCsv(ShapeFile(path));
   fs::path folder = uncertainty_path;
-  if (folder.empty() && IsFolder(path)) {
-    folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
+  if (folder.empty()) {
+    folder = AbsolutePath(ShapeFile(path)).parent_path().parent_path() / "sparse" / "0";
   }
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(
@@ -69,6 +69,10 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
           fmt::format("{}: the uncertainty in {} does not belong to {}: the sigmas differ", option,
                       uncertainty_path, path));
     }
+    LogWarning(
+        "{}: the sigmas of its points are used as if they were independent, because the joint "
+        "uncertainty in {} is of another frame or run; export both with one command",
+        path, folder.string());
   }
   result.covariance = CovarianceFromSigmas(result.shape);
   return result;

@@ -13,6 +13,7 @@
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
+#include "workflows/commands/compared_shapes.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/summary.h"
 
@@ -93,6 +94,11 @@ ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
   CheckModelOfShape(*result.model, shape, paths);
   if (IsShapeOf(shape, *result.model)) {
     result.uncertainty = ReadUncertaintyOf(*result.model, paths.input_path);
+  } else if (HasUncertainty(paths.input_path)) {
+    LogWarning(
+        "{}: its joint uncertainty is not used, because the shape is in another frame; export both "
+        "with one command",
+        paths.input_path);
   }
   return result;
 }
@@ -121,6 +127,8 @@ MetricsReport Analyze(const ShapeAnalyzerCommandOptions& options) {
   if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
   if (!options.paths.reference_path.empty()) {
     const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
+    CheckMetres(options.paths.shape_path, shape, options.paths.reference_path, reference,
+                layout.value_or(Layout()));
     AddMetrics(ComputeReferenceMetrics(shape, reference, covariance), &report);
     if (layout) {
       AddMetrics(CompareAdjacentDistances(shape, reference, *layout, covariance), &report);

@@ -146,9 +146,8 @@ void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
   const AlignmentMethod align = options.comparison.alignment.method;
   const std::string what = "the --reference_path " + reference;
   if (!IsMeshPath(reference)) {
-    RefuseOptionsWithoutEffect(
-        options.typed, {"reference_unit", "chord_deviation", "edge_tolerance", "align_start"},
-        what + " is a shape in m, not a surface");
+    RefuseOptionsWithoutEffect(options.typed, {"reference_unit", "chord_deviation", "align_start"},
+                               what + " is a shape in m, not a surface");
   } else {
     RefuseOptionsWithoutEffect(options.typed, {"reference_uncertainty_path"},
                                what + " is a surface, which has no uncertainty");

@@ -14,6 +14,7 @@
 #include "importer/print/sheet_plan.h"
 #include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
+#include "workflows/commands/compared_shapes.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/plan/plan_drawing.h"
@@ -132,7 +133,9 @@ PlannedSurface PlaceMarkers(const ShootPlannerCommandOptions& options) {
 PlannedSurface MakeSurface(const ShootPlannerCommandOptions& options) {
   if (options.paths.shape_path.empty()) return PlaceMarkers(options);
   const std::string file = ShapeFile(options.paths.shape_path);
-  return SurfaceOfShape(ReadShapeCsv(file), options.layout, file);
+  const MarkerShape shape = ReadShapeCsv(file);
+  CheckMetres(file, shape, options.layout);
+  return SurfaceOfShape(shape, options.layout, file);
 }
 
 void WritePlan(const ShootPlan& plan, const std::filesystem::path& folder) {

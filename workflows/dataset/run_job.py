@@ -42,7 +42,7 @@ def duration_s(database: Path) -> float | None:
     """From the first to the last frame with markers, the last one's own time included."""
     (first, last, first_s, last_s), = query(
         database, "SELECT MIN(frame_number), MAX(frame_number), MIN(time_s), MAX(time_s) "
-        "FROM marker_detections")
+        "FROM marker_detections WHERE rejected_because IS NULL")
     if first_s is None or last is None or last == first:
         return None
     return float((last_s - first_s) * (last - first + 1) / (last - first))

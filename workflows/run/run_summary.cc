@@ -139,18 +139,14 @@ MetricTable SectionTable(const std::vector<Section>& sections) {
   for (const Section& section : sections) {
     Metrics row = {
         {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
-    const auto add = [&row](const std::string& name, const std::string& unit, double factor,
-                            const std::optional<Estimate>& estimate) {
-      if (!estimate) return;
-      row.push_back({name + '_' + unit, factor * estimate->value});
-      if (estimate->sigma) row.push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
-    };
-    add("chord", "m", 1.0, section.chord_m);
-    add("camber", "percent", 100.0, section.camber);
-    add("draft", "percent", 100.0, section.draft_position);
-    add("twist", "deg", 1.0, section.twist_deg);
-    add("leech_twist", "deg", 1.0, section.leech_twist_deg);
-    add("girth", "m", 1.0, section.girth_m);
+    AddEstimate("chord", "m", section.chord_m, 1.0, &row);
+    AddEstimate("camber", "percent", section.camber, 100.0, &row);
+    AddEstimate("draft", "percent", section.draft_position, 100.0, &row);
+    AddEstimate("entry_angle", "deg", section.entry_angle_deg, 1.0, &row);
+    AddEstimate("exit_angle", "deg", section.exit_angle_deg, 1.0, &row);
+    AddEstimate("twist", "deg", section.twist_deg, 1.0, &row);
+    AddEstimate("leech_twist", "deg", section.leech_twist_deg, 1.0, &row);
+    AddEstimate("girth", "m", section.girth_m, 1.0, &row);
     row.push_back({"num_missing_at_luff", section.num_missing_at_luff});
     row.push_back({"num_missing_at_leech", section.num_missing_at_leech});
     table.rows.push_back(std::move(row));

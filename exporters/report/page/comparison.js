@@ -136,16 +136,14 @@ function differenceText(value) {
 function fillNumbers(data) {
   if (data.numbers.length === 0) return;
   byId('sections').hidden = false;
-  const isSeries = data.shapes.length > 1;
   fillTable('table_sections', [
     text('Section', 'section'),
     {name: 'Number', value: row => `${row.number}, ${row.unit}`, isText: true},
     number(data.reference, 'reference', 2),
     ...data.shapes.flatMap((shape, i) => [
-      ...(isSeries ? [] : [{name: shape.name, value: row => row.values[i]?.value,
-                            text: row => fixed(row.values[i]?.value, 2)}]),
-      {name: isSeries ? `${shape.name} minus ${data.reference}` : 'Difference', value: row => row.values[i]?.difference,
-       text: row => differenceText(row.values[i])},
+      {name: shape.name, value: row => row.values[i]?.value, text: row => fixed(row.values[i]?.value, 2)},
+      {name: data.shapes.length > 1 ? `${shape.name} minus ${data.reference}` : 'Difference',
+       value: row => row.values[i]?.difference, text: row => differenceText(row.values[i])},
     ]),
   ], data.numbers);
 }

@@ -220,6 +220,39 @@ TEST(ComparisonPage, ASeriesHasAColumnForEachShape) {
   EXPECT_GE(data["color_limit_mm"].get<double>(), 20.0);
 }
 
+// Compared with the whole reference, the profile of a line without its leech would lie across it.
+TEST(ComparisonPage, AShapeWithoutALeechIsDrawnOnTheChordItIsComparedWith) {
+  PageExample example;
+  const MarkerShape shape = BoatShape(0.001);
+  const MarkerLine& line = example.layout.parts.front().horizontal.front();
+  example.Add("trim2", shape);
+  example.Add("trim3", Without({line.marker_ids.back()}, shape));
+  const Json data = example.Data();
+  const auto row_of = [&](const std::string& section, const std::string& number) {
+    for (const Json& row : data["numbers"]) {
+      if (row["section"] == section && row["number"] == number) return row;
+    }
+    return Json();
+  };
+  ASSERT_FALSE(row_of(line.name, "chord").is_null());
+  EXPECT_FALSE(row_of(line.name, "chord").contains("reference"));
+  EXPECT_TRUE(row_of("h3", "chord").contains("reference"));
+  for (const Json& profile : data["profiles"]) {
+    const Json &whole = profile["curves"][1], &cut = profile["curves"][2];
+    EXPECT_NEAR(cut["own"][0][0].get<double>(), 0.0, 0.02);
+    // The same shape: each point of one curve is near a point of the other.
+    for (const Json& point : cut["own"]) {
+      double nearest_mm = 1e9;
+      for (const Json& other : whole["own"]) {
+        nearest_mm = std::min(nearest_mm,
+                              std::abs(point[1].get<double>() - other[1].get<double>()) +
+                                  0.2 * std::abs(point[0].get<double>() - other[0].get<double>()));
+      }
+      EXPECT_LT(nearest_mm, 20) << profile["section"];
+    }
+  }
+}
+
 TEST(ComparisonPage, ADesignHasSectionsToo) {
   PageExample example;
   example.is_design = true;

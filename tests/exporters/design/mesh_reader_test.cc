@@ -42,7 +42,8 @@ TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
   const TriangleMesh mesh = SailMesh();
   constexpr LengthUnit kM = LengthUnit::kMetre, kMm = LengthUnit::kMillimetre;
   const std::vector<std::pair<std::string, std::function<void(std::ostream&)>>> writers = {
-      {"a.ply", [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); }},
+      {"a.ply",
+       [&](std::ostream& out) { WriteMeshPly(mesh, "sail", PlyFormat::kBinaryLittleEndian, out); }},
       {"a.OBJ", [&](std::ostream& out) { WriteMeshObj(mesh, "sail", kM, out); }},
       {"b.obj", [&](std::ostream& out) { WriteMeshObj(mesh, "unit mm", kMm, out); }},
       {"a.stl", [&](std::ostream& out) { WriteMeshStl(mesh, "unit mm", kM, out); }},
@@ -82,7 +83,7 @@ TEST_F(MeshReaderTest, CutOffFiles) {
   std::ostringstream step, iges, ply, stl;
   WriteStep(surface, "a", step);
   WriteIges(surface, "a", iges);
-  WriteMeshPly(mesh, "a", ply);
+  WriteMeshPly(mesh, "a", PlyFormat::kBinaryLittleEndian, ply);
   WriteMeshStl(mesh, "a", LengthUnit::kMetre, stl);
   const std::vector<std::pair<std::string, std::string>> files = {
       {"a.step", step.str()}, {"a.iges", iges.str()}, {"a.ply", ply.str()}, {"a.stl", stl.str()}};

@@ -135,7 +135,7 @@ TEST(Mesh, TheSuggestedResolutionFits) {
 TEST(MeshWriter, PlyIsInMetresAndWhole) {
   const TriangleMesh mesh = MeshSurface(Sail(), EdgeLength(500));
   std::ostringstream out;
-  WriteMeshPly(mesh, "sail", out);
+  WriteMeshPly(mesh, "sail", PlyFormat::kBinaryLittleEndian, out);
   EXPECT_THAT(out.str(), HasSubstr("comment velamap surface of sail, unit m\n"));
   const PlyFile file = ReadPly(out.str());
   ASSERT_EQ(file.elements.size(), 2u);
@@ -160,7 +160,7 @@ TEST(MeshWriter, PlyLeavesOutWhatTheMeshLacks) {
   mesh.vertices_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
   std::ostringstream out;
-  WriteMeshPly(mesh, "a\nb", out);
+  WriteMeshPly(mesh, "a\nb", PlyFormat::kBinaryLittleEndian, out);
   EXPECT_EQ(ReadPly(out.str()).elements[0].properties.size(), 3u);
   EXPECT_THAT(out.str(), HasSubstr("surface of a b, unit m"));
   std::ostringstream obj;

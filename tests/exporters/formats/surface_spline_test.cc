@@ -9,9 +9,8 @@ namespace {
 
 // Flat, 2 m by 3 m, in the plane y = 0; x is u, z is v.
 SplineSurface FlatRectangle() {
-  return FitSurface(
-             MarkersOn([](double u, double v) { return Eigen::Vector3d(2 * u, 0, 3 * v); }, 4, 5))
-      .surface;
+  const auto rectangle = [](double u, double v) { return Eigen::Vector3d(2 * u, 0, 3 * v); };
+  return FitSurface(AsExact(MarkersOn(rectangle, 4, 5))).surface;
 }
 
 SplineSurface SplineSail() { return FitSurface(MarkersOn(TwistedSail, 8, 9)).surface; }

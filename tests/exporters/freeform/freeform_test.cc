@@ -260,7 +260,7 @@ TEST(FreeformShape, EachPartWithoutHorizontalLinesHasItsFiles) {
   EXPECT_NEAR(freeform.surfaces[0].surface.residuals[0].sigma_m, 1e-3, 1e-9);
   EXPECT_THAT(freeform.notes, ElementsAre(HasSubstr("few: no surface: 1 whole markers")));
   const TempDir dir;
-  WriteFreeformFiles(freeform, {}, LengthUnit::kMetre, dir.path());
+  WriteFreeformFiles(freeform, {}, LengthUnit::kMetre, PlyFormat::kBinaryLittleEndian, dir.path());
   const PlyFile ply = ReadPly(TextOf(dir / "freeform.ply"));
   const TriangleMesh& mesh = freeform.surfaces[0].surface.mesh;
   EXPECT_EQ(ply.elements[0].Column("x").back(), mesh.vertices_m.back().x());

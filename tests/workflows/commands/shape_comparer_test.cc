@@ -49,7 +49,9 @@ class ShapeComparerTest : public StagesTest {
   void WriteMesh(const std::string& name, double factor) {
     TriangleMesh mesh = SailMesh();
     for (Eigen::Vector3d& x : mesh.vertices_m) x *= factor;
-    WriteFileAtomically(dir_ / name, [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); });
+    WriteFileAtomically(dir_ / name, [&](std::ostream& out) {
+      WriteMeshPly(mesh, "sail", PlyFormat::kBinaryLittleEndian, out);
+    });
   }
 
   ProgramRun Compare(const std::string& reference, std::vector<std::string> more = {}) {
@@ -172,8 +174,9 @@ TEST_F(ShapeComparerTest, ASeriesAgainstOneReference) {
 
 TEST_F(ShapeComparerTest, MarkersBeyondTheEdgeOfADesignCountUpToATolerance) {
   const TriangleMesh mesh = SailMesh(-0.02);
-  WriteFileAtomically(dir_ / "design.ply",
-                      [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); });
+  WriteFileAtomically(dir_ / "design.ply", [&](std::ostream& out) {
+    WriteMeshPly(mesh, "sail", PlyFormat::kBinaryLittleEndian, out);
+  });
   WriteShape("sail/shape", MarkersOnPart(BoatShape(), {}, "sail"));
   const auto compare = [&](const std::string& tolerance_mm) {
     return RunVelamap({"shape_comparer", "--shape_path", path("sail/shape"), "--reference_path",
@@ -220,6 +223,13 @@ TEST_F(ShapeComparerTest, AShapeInMillimetresIsRefused) {
   ExpectError(compare_mm("design.ply", {}), 2, "sides of 100 m, expected at most 10 m");
   ExpectError(compare_mm("design.ply", {"--layout_path", path("layout.yml")}), 2,
               "1000 times as large as the layout says: give metres");
+  ExpectError(RunVelamap({"shoot_planner", "--shape_path", path("mm/shape"), "--layout_path",
+                          path("layout.yml"), "--field_of_view", "90", "--width", "1920",
+                          "--height", "1080", "--output_path", path("plan")}),
+              2, "1000 times as large as the layout says: give metres");
+  ExpectError(RunVelamap({"shape_analyzer", "--shape_path", path("b/shape"), "--reference_path",
+                          path("mm/shape")}),
+              2, wrong);
 }
 
 TEST_F(ShapeComparerTest, ShapesOfDifferentObjectsGetABadVerdict) {
@@ -242,11 +252,14 @@ TEST_F(ShapeComparerTest, JointUncertaintyIsUsedWhereItBelongs) {
   WriteUncertainty(uncertainty, {}, path("b/sparse/0"));
   const ProgramRun beside = Compare("b/shape");
   EXPECT_THAT(beside.err, HasSubstr("joint uncertainty from"));
+  EXPECT_EQ(Compare("b/shape/shape.csv").out, beside.out);
   const ProgramRun named = Compare("b/shape", {"--uncertainty_path", path("b/sparse/0")});
   EXPECT_EQ(named.exit_code, 0) << named.err;
   uncertainty.points = CovarianceFromSigmas(BoatShape(0.005));
   WriteUncertainty(uncertainty, {}, path("b/sparse/0"));
-  EXPECT_THAT(Compare("b/shape").err, Not(HasSubstr("joint uncertainty")));
+  const ProgramRun of_another = Compare("b/shape");
+  EXPECT_THAT(of_another.err, Not(HasSubstr("joint uncertainty from")));
+  EXPECT_THAT(of_another.err, HasSubstr("as if they were independent"));
   ExpectError(Compare("b/shape", {"--reference_uncertainty_path", path("b/sparse/0")}), 2,
               "the sigmas differ");
   ExpectError(Compare("b/shape", {"--uncertainty_path", path("a")}), 2, "uncertainty.bin");
