@@ -148,6 +148,10 @@ void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
   if (!IsMeshPath(reference)) {
     RefuseOptionsWithoutEffect(options.typed, {"reference_unit", "chord_deviation", "align_start"},
                                what + " is a shape in m, not a surface");
+    if (options.layout_path.empty()) {
+      RefuseOptionsWithoutEffect(options.typed, {"edge_tolerance"},
+                                 "without --layout_path, no surfaces of the shapes are compared");
+    }
   } else {
     RefuseOptionsWithoutEffect(options.typed, {"reference_uncertainty_path"},
                                what + " is a surface, which has no uncertainty");
