@@ -45,8 +45,8 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
                                            Model model, std::optional<CameraModel> wanted);
 
 // Returns `step`, the step of the focal length that a verdict on steadiness (camera_steadiness.h)
-// names, if it is real. A suspicious one is measured on `seed`, the model before its adjustment;
-// without a seed it does not count as real.
+// names, if it is real: a suspicious one if it can be measured on `seed`, the model before its
+// adjustment, and a certain one in any case. The values are those measured, where they are.
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);

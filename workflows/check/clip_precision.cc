@@ -13,6 +13,7 @@
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
 #include "importer/geometry/units.h"
+#include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/register_frames.h"
@@ -47,11 +48,13 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   RegistrationOptions registration_options;
   registration_options.num_threads = num_threads;
   const Registration registration = RegisterFrames(images, cameras, layout, registration_options);
-  Model model = MakeSeedModel(registration, images, cameras);
+  const Model seed = MakeSeedModel(registration, images, cameras);
+  Model model = seed;
   MarkerAdjustmentOptions adjustment_options;
   adjustment_options.num_threads = num_threads;
-  const MarkerAdjustmentSummary summary = AdjustWithMarkers(
-      adjustment_options, layout, CornerErrorsOf(images, database.ReadFormation()), &model);
+  const CornerErrors corner_errors = CornerErrorsOf(images, database.ReadFormation());
+  const MarkerAdjustmentSummary summary =
+      AdjustWithMarkers(adjustment_options, layout, corner_errors, &model);
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
   const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.uncertainty.points);
@@ -60,7 +63,10 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.marker_sigma_mm = MedianSigma(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
+  // Doubtful steps are not measured, because a check has to be quick.
   precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));
+  precision.steadiness.step =
+      ConfirmFocalStep(adjustment_options, layout, corner_errors, &seed, precision.steadiness.step);
   precision.calibration = summary.uncertainty.calibration;
   precision.warnings = summary.warnings;
   if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
