@@ -71,7 +71,7 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
 
 void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions& options,
                      const Verdict* verdict, const fs::path& folder) {
-  const PlyFormat format = options.ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
+  const PlyFormat format = options.files.Ply();
   const std::string frame = FrameText(report.frame);
   WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
   WriteFile(folder / "shape.ply", [&](std::ostream& out) {
@@ -93,10 +93,8 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
     WriteFile(folder / "alicevision.sfm",
               [&](std::ostream& out) { WriteAliceVisionScene(report.metric_model, out); });
   }
-  SailFileOptions files = options.files;
-  files.ply_format = format;
-  WriteSailFiles(report.sail, report.shape, report.frame, files, folder);
-  WriteFreeformFiles(report.freeform, report.frame, files.unit, format, folder);
+  WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
+  WriteFreeformFiles(report.freeform, report.frame, options.files.unit, format, folder);
   // The last one, because it lists the others.
   const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit);
   WriteFile(folder / "shape.json", [&](std::ostream& out) {

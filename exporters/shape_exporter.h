@@ -26,12 +26,11 @@
 namespace velamap {
 
 struct ShapeExporterOptions {
-  std::string model_output_path;  // folder of the metric model, binary and text; empty for none
-  std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty for none
-  bool ascii_ply = false;
-  bool metashape = false;                         // also the files of exchange/metashape_markers.h
-  bool alicevision = false;                       // also the file of exchange/alicevision_scene.h
-  std::optional<FrameChoice> frame;               // without it, ChooseFrame() decides
+  std::string model_output_path;     // folder of the metric model, binary and text; empty for none
+  std::string shape_output_path;     // folder of shape.csv, shape.ply, ...; empty for none
+  bool metashape = false;            // also the files of exchange/metashape_markers.h
+  bool alicevision = false;          // also the file of exchange/alicevision_scene.h
+  std::optional<FrameChoice> frame;  // without it, ChooseFrame() decides
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
   SailFileOptions files;  // the unit also applies to parts without lines

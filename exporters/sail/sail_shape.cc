@@ -91,7 +91,7 @@ void WriteSurfaceFiles(const SailSurface& surface, CadExtras extras, const std::
       {stem + ".step", [&](std::ostream& out) { WriteStep(spline, title, out, extras); }},
       {stem + ".igs", [&](std::ostream& out) { WriteIges(spline, title, out, extras); }},
       {stem + ".ply",
-       [&](std::ostream& out) { WriteMeshPly(surface.mesh, title, options.ply_format, out); }},
+       [&](std::ostream& out) { WriteMeshPly(surface.mesh, title, options.Ply(), out); }},
       {stem + ".obj",
        [&](std::ostream& out) { WriteMeshObj(surface.mesh, title, options.unit, out); }},
       {stem + ".stl",

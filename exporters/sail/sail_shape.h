@@ -34,7 +34,8 @@ struct SailOptions {
 struct SailFileOptions {
   LengthUnit unit = LengthUnit::kMetre;  // of the formats that name none, and of DXF
   GridOptions grid;
-  PlyFormat ply_format = PlyFormat::kBinaryLittleEndian;
+  bool ascii_ply = false;
+  PlyFormat Ply() const { return ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian; }
 };
 
 struct SailSurface {

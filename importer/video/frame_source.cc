@@ -24,6 +24,7 @@
 #include "importer/video/image_file.h"
 #include "importer/video/interlacing.h"
 #include "importer/video/video_decoder.h"
+#include "importer/video/video_stream.h"
 
 namespace velamap {
 namespace {
@@ -268,7 +269,7 @@ void CheckImagePath(const std::string& path) {
 }
 
 double PixelAspect(const std::string& path) {
-  return IsFolder(path) ? 1.0 : VideoDecoder(path, 1).PixelAspect();
+  return IsFolder(path) ? 1.0 : VideoStream(path).PixelAspect();
 }
 
 std::string NameOfVideoFrame(int frame_number) {

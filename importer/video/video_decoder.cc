@@ -45,8 +45,6 @@ VideoDecoder::~VideoDecoder() = default;
 
 int VideoDecoder::NumQuarterTurns() const { return num_quarter_turns_; }
 
-double VideoDecoder::PixelAspect() const { return stream_->PixelAspect(); }
-
 bool VideoDecoder::IsMarkedInterlaced() const {
   const AVFieldOrder order = stream_->stream().codecpar->field_order;
   return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;

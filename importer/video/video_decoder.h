@@ -41,9 +41,6 @@ class VideoDecoder {
   // 4.6 turns them in the wrong direction (github.com/opencv/opencv/issues/22088).
   int NumQuarterTurns() const;
 
-  // Width over height of a pixel, as the video says; 1 if it does not.
-  double PixelAspect() const;
-
   // Whether the container says that the video is interlaced. Its frames may also say so.
   bool IsMarkedInterlaced() const;
 

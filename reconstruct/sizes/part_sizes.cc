@@ -6,9 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include <fmt/format.h>
+#include <boost/math/distributions/students_t.hpp>
 
 namespace velamap {
 namespace {

@@ -133,7 +133,7 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
   TransformModel(ExampleSim3(0.2), &model);
   for (const bool ascii : {false, true}) {
     ShapeExporterOptions options = OptionsIn(dir);
-    options.ascii_ply = ascii;
+    options.files.ascii_ply = ascii;
     const ShapeExportReport report = ExportShape(model, ExampleLayout(), options);
     const PlyFormat format = ascii ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
     const fs::path shape = dir / "shape";

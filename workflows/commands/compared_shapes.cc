@@ -47,17 +47,15 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
                                   const std::string& option) {
   UncertainShape result;
   result.shape = ReadShapeCsv(ShapeFile(path));
-  fs::path folder = uncertainty_path;
-  if (folder.empty()) {
-    folder = AbsolutePath(ShapeFile(path)).parent_path().parent_path() / "sparse" / "0";
-  }
+  const fs::path folder =
+      uncertainty_path.empty() ? ModelFolderOfShape(path) : fs::path(uncertainty_path);
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(
         fmt::format("{}: {} holds no {}; give the metric model of the shape: sparse/0 of its "
                     "workspace, or what --output_path of shape_exporter has named",
                     option, uncertainty_path, kUncertaintyFileName));
   }
-  if (!folder.empty() && HasUncertainty(folder.string())) {
+  if (HasUncertainty(folder.string())) {
     const PointCovariance covariance = ReadUncertainty(folder.string()).points;
     if (BelongsTo(covariance, result.shape)) {
       LogInfo("{}: joint uncertainty from {}", path, folder.string());

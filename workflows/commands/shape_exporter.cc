@@ -38,7 +38,7 @@ CommandSyntax Declare(ShapeExporterCommandOptions* options) {
              "shape_path", PathUse::kWritesFolder, &paths->shape_path,
              "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is "
              "written")),
-         {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"},
+         {"ascii_ply", &options->exporter.files.ascii_ply, "0|1", "PLY as text instead of binary"},
          {"metashape", &options->exporter.metashape, "0|1",
           "also write the corners as markers and as reference coordinates for Agisoft Metashape"},
          {"alicevision", &options->exporter.alicevision, "0|1",

@@ -14,6 +14,7 @@
 #include "importer/text/shown_text.h"
 #include "importer/video/source_file.h"
 #include "reconstruct/model/model_io.h"
+#include "workflows/options/shared_options.h"
 #include "workflows/run/workspace.h"
 
 namespace velamap {
@@ -59,9 +60,8 @@ fs::path DefaultPath(const Option& option) {
 
 // Comparisons also read the uncertainty of the model beside a folder of a shape.
 void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
-  const fs::path file = IsFolder(path) ? path / "shape.csv" : path;
-  paths->inputs.push_back({used_by, file});
-  AddModelFiles(used_by, AbsolutePath(file).parent_path().parent_path() / "sparse" / "0", paths);
+  paths->inputs.push_back({used_by, ShapeFile(path)});
+  AddModelFiles(used_by, ModelFolderOfShape(path), paths);
 }
 
 void AddUse(PathUse use, const std::string& used_by, const std::string& path, bool is_default_name,

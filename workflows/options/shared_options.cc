@@ -154,6 +154,10 @@ std::string ShapeFile(const std::string& path) {
   return IsFolder(file) ? (file / "shape.csv").string() : path;
 }
 
+std::filesystem::path ModelFolderOfShape(const std::string& path) {
+  return AbsolutePath(ShapeFile(path)).parent_path().parent_path() / "sparse" / "0";
+}
+
 PriorShape LoadPriorShape(const std::string& prior_shape_path) {
   PriorShape prior_shape;
   if (prior_shape_path.empty()) return prior_shape;

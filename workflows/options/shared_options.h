@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,6 +90,10 @@ std::optional<Layout> LoadGivenLayout(const MarkerOptions& options, bool with_di
 
 // `path`, or the shape.csv in it if it is a folder.
 std::string ShapeFile(const std::string& path);
+
+// sparse/0 beside the folder that holds the ShapeFile(): where a workspace has the model of a
+// shape.
+std::filesystem::path ModelFolderOfShape(const std::string& path);
 
 // Reads the whole markers of an earlier shape; none for an empty path. Throws InputError for a file
 // that is not a shape.csv or has no whole marker.

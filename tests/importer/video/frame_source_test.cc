@@ -11,6 +11,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "importer/base/error.h"
+#include "tests/importer/video/grey_clip.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
@@ -190,6 +191,15 @@ TEST(VideoFile, BrokenOffVideoIsUsedAsFarAsItGoes) {
   const std::vector<Frame> frames = ReadAll(source.get());
   EXPECT_GE(frames.size(), 5u);
   EXPECT_LT(frames.size(), 20u);
+}
+
+TEST(PixelAspectTest, PixelsAreSquareUnlessTheVideoSaysOtherwise) {
+  const TempDir dir;
+  ASSERT_NO_FATAL_FAILURE(MakeGreyClip(dir / "square.mp4", "-c:v libx264"));
+  ASSERT_NO_FATAL_FAILURE(
+      MakeGreyClip(dir / "wide.mp4", "-vf hue=s=0,format=yuv420p,setsar=4/3 -c:v libx264"));
+  EXPECT_EQ(PixelAspect(dir / "square.mp4"), 1.0);
+  EXPECT_NEAR(PixelAspect(dir / "wide.mp4"), 4.0 / 3, 1e-12);
 }
 
 }  // namespace

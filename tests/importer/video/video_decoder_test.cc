@@ -176,15 +176,6 @@ TEST(VideoDecoder, PicturesAreTurnedAsTheDisplayMatrixSays) {
   }
 }
 
-TEST(VideoDecoder, PixelsAreSquareUnlessTheVideoSaysOtherwise) {
-  const TempDir dir;
-  ASSERT_NO_FATAL_FAILURE(MakeGreyClip(dir / "square.mp4", "-c:v libx264"));
-  ASSERT_NO_FATAL_FAILURE(
-      MakeGreyClip(dir / "wide.mp4", "-vf hue=s=0,format=yuv420p,setsar=4/3 -c:v libx264"));
-  EXPECT_EQ(VideoDecoder(dir / "square.mp4", 1).PixelAspect(), 1.0);
-  EXPECT_NEAR(VideoDecoder(dir / "wide.mp4", 1).PixelAspect(), 4.0 / 3, 1e-12);
-}
-
 TEST(VideoDecoder, TimesDoNotRunBackwardsBehindACut) {
   const TempDir dir;
   ASSERT_NO_FATAL_FAILURE(MakeGreyClip(dir / "once.ts", "-c:v libx264 -g 12 -bf 3"));
