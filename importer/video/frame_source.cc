@@ -56,7 +56,7 @@ std::vector<std::string> ListImages(const fs::path& folder) {
   std::sort(names.begin(), names.end(), NaturalLess);
   std::sort(others.begin(), others.end(), NaturalLess);
   if (names.empty()) {
-    throw InputError(fmt::format("{}: the folder holds no images (.jpg, .png, .tif ...){}",
+    throw InputError(fmt::format("{}: the folder holds no images (.jpg, .heic, .png, .tif ...){}",
                                  folder.string(), RemedyForNoImages(folder, others)));
   }
   for (const std::string& name : names) CheckImageName(name, folder.string());

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "importer/video/ffmpeg_picture.h"
+#include "importer/video/heif_picture.h"
 #include "importer/video/jpeg_codec.h"
 
 namespace velamap {
@@ -51,6 +52,7 @@ std::optional<cv::Size2d> StoredSize(const Bytes& bytes) {
     return cv::Size2d(BigEndian32(&bytes[kPngSize]), BigEndian32(&bytes[kPngSize + 4]));
   }
   if (IsJpeg(bytes)) return JpegSize(bytes);
+  if (IsHeif(bytes)) return HeifSize(bytes);
   return std::nullopt;
 }
 
@@ -66,6 +68,7 @@ cv::Mat Decode(const Bytes& bytes, std::size_t max_pixels, std::string* reason) 
   cv::Mat color;
   std::string damage;
   if (IsJpeg(bytes)) color = DecodeJpeg(bytes, &damage);
+  if (IsHeif(bytes)) color = DecodeHeif(bytes, &damage);
   if (!damage.empty() && color.empty()) {
     *reason = fmt::format("the file is damaged ({}); copy it from the camera again", damage);
     return {};

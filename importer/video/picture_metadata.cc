@@ -1,14 +1,28 @@
 #include "importer/video/picture_metadata.h"
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include <libexif/exif-data.h>
 
 #include "importer/geometry/units.h"
+#include "importer/video/heif_picture.h"
 
 namespace velamap {
 namespace {
+
+using ExifPtr = std::unique_ptr<ExifData, void (*)(ExifData*)>;
+
+ExifPtr ReadExif(const std::string& path) {
+  // libheif reads nothing from a JPEG file, and libexif nothing from a HEIF file.
+  const std::vector<std::uint8_t> heif = ReadHeifExif(path);
+  return {heif.empty()
+              ? exif_data_new_from_file(path.c_str())
+              : exif_data_new_from_data(heif.data(), static_cast<unsigned int>(heif.size())),
+          exif_data_unref};
+}
 
 // Nothing where the tag is missing, is no number, or is not positive.
 std::optional<double> PositiveNumber(ExifData* data, ExifIfd directory, ExifTag tag) {
@@ -57,8 +71,7 @@ PictureMetadata ReadPictureMetadata(const std::string& path) {
   // No real lens is outside; a damaged tag may be.
   constexpr double kMinFocal = 0.1, kMaxFocal = 100.0;
   PictureMetadata metadata;
-  const std::unique_ptr<ExifData, void (*)(ExifData*)> data(exif_data_new_from_file(path.c_str()),
-                                                            exif_data_unref);
+  const ExifPtr data = ReadExif(path);
   if (!data) return metadata;
   metadata.quarter_turns =
       QuarterTurns(PositiveNumber(data.get(), EXIF_IFD_0, EXIF_TAG_ORIENTATION).value_or(1.0));

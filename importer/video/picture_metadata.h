@@ -17,7 +17,7 @@ struct PictureMetadata {
   std::optional<double> focal_in_diagonals;
 };
 
-// Defaults for a file without EXIF or with damaged EXIF. Reads JPEG files. Thread-safe.
+// Defaults for a file without EXIF or with damaged EXIF. Reads JPEG and HEIF files. Thread-safe.
 PictureMetadata ReadPictureMetadata(const std::string& path);
 
 }  // namespace velamap

@@ -67,24 +67,25 @@ std::string FirstWithEnding(const std::vector<std::string>& names,
 }  // namespace
 
 bool HasImageExtension(const std::string& path) {
-  static constexpr std::array<const char*, 16> kExtensions = {
-      ".jpg",  ".jpeg", ".jpe", ".png", ".tif", ".tiff", ".bmp", ".dib",
-      ".webp", ".jp2",  ".pgm", ".ppm", ".pbm", ".pnm",  ".ras", ".exr"};
+  static constexpr std::array<const char*, 20> kExtensions = {
+      ".jpg", ".jpeg", ".jpe",  ".heic", ".heif", ".hif", ".avif", ".png", ".tif", ".tiff",
+      ".bmp", ".dib",  ".webp", ".jp2",  ".pgm",  ".ppm", ".pbm",  ".pnm", ".ras", ".exr"};
   return std::find(kExtensions.begin(), kExtensions.end(), LowerExtension(path)) !=
          kExtensions.end();
 }
 
 std::string RemedyForNoImages(const std::filesystem::path& folder,
                               const std::vector<std::string>& names) {
-  const std::string heic = FirstWithEnding(names, {".heic", ".heif", ".avif"});
+  const std::string raw = FirstWithEnding(
+      names, {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".pef", ".gpr"});
   const std::string video =
       FirstWithEnding(names, {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".webm"});
   std::string remedy;
-  if (!heic.empty()) {
+  if (!raw.empty()) {
     remedy += fmt::format(
-        "; HEIC pictures such as {} cannot be read: convert them to JPEG, or set "
-        "the phone's camera to 'most compatible'",
-        heic);
+        "; raw pictures such as {} cannot be read: develop them to JPEG or TIFF, all with the same "
+        "settings and without correction of the lens",
+        raw);
   }
   if (!video.empty()) {
     remedy += fmt::format("; for a video, give the file itself: {}", (folder / video).string());

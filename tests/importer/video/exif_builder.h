@@ -32,17 +32,22 @@ class ExifBuilder {
                       {numerator, denominator});
   }
 
-  // The APP1 segment, which belongs directly after the SOI marker (two bytes) of a JPEG file.
-  std::string Segment() const {
+  std::string Data() const {  // from "Exif\0\0" on
     unsigned char* bytes = nullptr;
     unsigned int size = 0;
     exif_data_save_data(data_, &bytes, &size);
-    std::string segment = "\xFF\xE1";
-    segment += static_cast<char>((size + 2) >> 8);
-    segment += static_cast<char>((size + 2) & 0xFF);
-    segment.append(reinterpret_cast<const char*>(bytes), size);
+    const std::string data(reinterpret_cast<const char*>(bytes), size);
     std::free(bytes);
-    return segment;
+    return data;
+  }
+
+  // The APP1 segment, which belongs directly after the SOI marker (two bytes) of a JPEG file.
+  std::string Segment() const {
+    const std::string data = Data();
+    const std::size_t length = data.size() + 2;
+    return std::string{'\xFF', '\xE1', static_cast<char>(length >> 8),
+                       static_cast<char>(length & 0xFF)} +
+           data;
   }
 
  private:

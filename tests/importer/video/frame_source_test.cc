@@ -110,12 +110,12 @@ TEST(OpenFrameSource, NamesWhatIsWrong) {
 
 TEST(OpenFrameSource, SaysWhatToDoWithAFolderOfAPhone) {
   const TempDir dir;
-  std::ofstream(dir / "IMG_1.HEIC") << "a picture";
+  std::ofstream(dir / "IMG_1.DNG") << "a picture";
   ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); },
-                           {"no images", "IMG_1.HEIC", "JPEG", "most compatible"});
+                           {"no images", "IMG_1.DNG", "JPEG", "without correction"});
   std::ofstream(dir / "clip.MOV") << "a video";
   ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); },
-                           {"IMG_1.HEIC", "give the file itself: " + (dir / "clip.MOV").string()});
+                           {"IMG_1.DNG", "give the file itself: " + (dir / "clip.MOV").string()});
 }
 
 // Root may read everything, so the test takes the rights of another user for a while.
