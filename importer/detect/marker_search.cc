@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/detect/interpolate.h"
+#include "importer/detect/search_regions.h"
 #include "importer/detect/second_look.h"
 
 namespace velamap {
@@ -54,16 +55,6 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
       std::floor(options.min_marker_perimeter_rate * image_size_px), std::floor(least_contour_px));
   parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
   return parameters;
-}
-
-// The pixels within `reach_px` of a marker.
-cv::Rect Surroundings(const QuadCorners& corners, int reach_px) {
-  const auto [min, max] = BoundingBox(corners);
-  const cv::Point top_left(static_cast<int>(min.x()) - reach_px,
-                           static_cast<int>(min.y()) - reach_px);
-  const cv::Point bottom_right(static_cast<int>(max.x()) + reach_px + 1,
-                               static_cast<int>(max.y()) + reach_px + 1);
-  return {top_left, bottom_right};
 }
 
 cv::Rect Grown(const cv::Rect& rect, int by_px) {
@@ -191,11 +182,13 @@ std::vector<MarkerQuad> SearchRegions(const Search& search, const std::vector<cv
     std::vector<MarkerQuad> found;
     SearchRegion(search, region, looks_again, &found);
     for (const MarkerQuad& quad : found) {
-      if (Contains(region, Surroundings(quad.corners_px, kSearchReachPx) & search.Image())) {
+      const auto around = [&](int reach_px) {
+        return PixelsAround(BoundingBox(quad.corners_px), search.Image().size(), reach_px);
+      };
+      if (Contains(region, around(kSearchReachPx))) {
         quads.push_back(quad);
       } else {
-        SearchRegion(search, Surroundings(quad.corners_px, 2 * kSearchReachPx) & search.Image(),
-                     looks_again, &quads);
+        SearchRegion(search, around(2 * kSearchReachPx), looks_again, &quads);
       }
     }
   }

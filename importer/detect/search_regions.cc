@@ -18,13 +18,16 @@ bool FitsIn(const Box& box, const cv::Size& size, double margin_px) {
          box.max.x() <= size.width - 1 + margin_px && box.max.y() <= size.height - 1 + margin_px;
 }
 
-cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
-  const double reach_px = margin_px + kSearchReachPx;
+cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px) {
   const cv::Point min(static_cast<int>(std::floor(box.min.x() - reach_px)),
                       static_cast<int>(std::floor(box.min.y() - reach_px)));
   const cv::Point max(static_cast<int>(std::ceil(box.max.x() + reach_px)) + 1,
                       static_cast<int>(std::ceil(box.max.y() + reach_px)) + 1);
   return cv::Rect(min, max) & cv::Rect({0, 0}, size);
+}
+
+cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
+  return PixelsAround(box, size, margin_px + kSearchReachPx);
 }
 
 double AreaOf(const std::vector<cv::Rect>& regions) {

@@ -14,6 +14,9 @@ namespace velamap {
 // negative margin, whether it certainly does.
 bool FitsIn(const Box& box, const cv::Size& size, double margin_px);
 
+// The pixels of the image that are at most `reach_px` from the box, in each direction.
+cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px);
+
 // The region to search for a marker whose place is known to `margin_px`.
 cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
 

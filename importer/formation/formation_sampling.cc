@@ -14,6 +14,7 @@
 #include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/detect/marker_alignment.h"
+#include "importer/detect/search_regions.h"
 #include "importer/refine/read_again.h"
 #include "importer/video/frame_source.h"
 
@@ -39,7 +40,7 @@ SampleQuota QuotaOfFrame(int num_frames) {
 }
 
 // How far a sample reaches beyond the marker.
-int SampleReachPx(double side_px) { return static_cast<int>(0.6 * side_px) + 8; }
+double SampleReachPx(double side_px) { return 0.6 * side_px + 8; }
 
 // Markers of the layout, spread over the better half by size.
 std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const SampleQuota& quota,
@@ -76,13 +77,8 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
 // show edges where there are none.
 std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv::Mat& gray,
                                          const MarkerQuad& found) {
-  const int reach_px = SampleReachPx(QuadMeanSide(found.corners_px));
-  const Box box = BoundingBox(found.corners_px);
-  const cv::Rect cut =
-      cv::Rect(static_cast<int>(box.min.x()) - reach_px, static_cast<int>(box.min.y()) - reach_px,
-               static_cast<int>(box.max.x() - box.min.x()) + 2 * reach_px,
-               static_cast<int>(box.max.y() - box.min.y()) + 2 * reach_px) &
-      cv::Rect({}, gray.size());
+  const cv::Rect cut = PixelsAround(BoundingBox(found.corners_px), gray.size(),
+                                    SampleReachPx(QuadMeanSide(found.corners_px)));
   FormationSample sample;
   sample.gray = gray(cut).clone();
   if (detector.options.inverted) cv::bitwise_not(sample.gray, sample.gray);

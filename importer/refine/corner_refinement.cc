@@ -9,6 +9,7 @@
 #include "importer/base/error.h"
 #include "importer/detect/gray_levels.h"
 #include "importer/detect/marker_alignment.h"
+#include "importer/detect/search_regions.h"
 #include "importer/pattern/pattern_fit.h"
 #include "importer/refine/edge_fit.h"
 #include "importer/refine/edge_sampling.h"
@@ -132,13 +133,8 @@ struct LightPart {
 
 LightPart CutLight(const cv::Mat& gray, const QuadCorners& corners_px, double cell_px,
                    const ImageFormation& formation) {
-  const Box box = BoundingBox(corners_px);
-  const double reach_px = cell_px + 2 * kMaxBandPx;
-  const cv::Point low(static_cast<int>(box.min.x() - reach_px),
-                      static_cast<int>(box.min.y() - reach_px));
-  const cv::Point high(static_cast<int>(box.max.x() + reach_px) + 1,
-                       static_cast<int>(box.max.y() + reach_px) + 1);
-  const cv::Rect part = cv::Rect(low, high) & cv::Rect({}, gray.size());
+  const cv::Rect part =
+      PixelsAround(BoundingBox(corners_px), gray.size(), cell_px + 2 * kMaxBandPx);
   cv::Mat light;
   gray(part).convertTo(light, CV_32F);
   formation.tone().Decode(&light);
