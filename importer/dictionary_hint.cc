@@ -20,7 +20,8 @@ constexpr int kMaxNumSamples = 12;
 // Over many pictures, chance finds a few markers of any dictionary.
 constexpr int kMinNumMarkers = 2;
 constexpr double kMinMarkersPerImage = 0.5;
-// Of the detections that may be false ones with ids beyond a smaller dictionary of the family.
+// The largest share of detections that may be false, with ids beyond a smaller dictionary of the
+// family.
 constexpr double kMaxShareBeyond = 0.05;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
@@ -58,8 +59,8 @@ struct Found {
   }
   int NumMarkers() const { return NumUpTo(std::numeric_limits<int>::max()); }
 
-  // The largest id, but for a few far beyond all others; -1 without any. Prints number their
-  // markers without large gaps.
+  // The largest id, not counting a few that are far beyond all others, because prints number their
+  // markers without large gaps; -1 if there are none.
   int MaxId() const {
     constexpr double kGapFactor = 1.5;
     constexpr int kLeastGap = 10;

@@ -40,7 +40,7 @@ class Pipeline {
       if (threads_.size() >= 2) return;
       End();
       throw InputError(fmt::format(
-          "the system starts no more threads ({}); raise the limit of processes (ulimit -u), or "
+          "the system cannot start more threads ({}); raise the limit of processes (ulimit -u), or "
           "end other programs",
           error.code().message()));
     }

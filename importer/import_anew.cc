@@ -77,15 +77,15 @@ void RemoveStage(const fs::path& stage) {
   RemoveAll(stage);
 }
 
-// A copy with the content that the photograph had at the import but no longer has.
+// Whether the copy has the content that the photograph had at the import but no longer has.
 bool IsOutdatedCopy(const fs::path& copy, const fs::path& original, const SourceFile& known) {
   return IsRegularFile(copy) && !IsLink(copy) && IsRegularFile(original) &&
          !IsSameFile(copy, original) && !HasSameContent(known, original.string()) &&
          HasSameContent(known, copy.string());
 }
 
-// Completes the journal that another program has left; otherwise SQLite would apply it to the new
-// database.
+// Completes the journal that another program has left, because SQLite would otherwise apply it to
+// the new database.
 void SettleJournals(const std::string& path) {
   { const ColmapDatabase earlier(path, ColmapDatabase::Mode::kReadWriteCreate); }
   if (Exists(path + "-wal")) {

@@ -41,7 +41,8 @@ void CheckVideo(const MarkerImporterOptions& options,
                                SourceText(known->second), kImportAnewRemedy));
 }
 
-// Frames in the database would be in the result even if the options do not select them now.
+// Throws InputError if the database holds frames that the options do not select now, because these
+// would still be in the result.
 void CheckFrames(const MarkerImporterOptions& options,
                  const std::vector<std::string>& known_names) {
   const auto is_left_out = [&](const std::string& name) {
@@ -91,7 +92,7 @@ void CheckPhotographs(const MarkerImporterOptions& options,
   }
 }
 
-// The markers that were found are all left out.
+// Throws DataError that says why all markers that were found are rejected.
 [[noreturn]] void ThrowAllRejected(const MarkerImporterOptions& options,
                                    const ImportReport& report) {
   const int num_foreign = report.num_not_in_layout, num_doubtful = report.num_doubtful_rotations;

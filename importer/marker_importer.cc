@@ -36,8 +36,8 @@ std::string ProgressLine(const FrameResult& result) {
   return fmt::format("{}: {} markers", detections.image_name, detections.markers.size());
 }
 
-// The estimate in the database, so that later frames are treated like the first ones; otherwise a
-// new one, which is added to the database and whose time is added to `time`.
+// Returns the estimate in the database, so that later frames are treated like the first ones. If
+// there is none, makes one, adds it to the database, and adds the time to `time`.
 FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
                               const ProgressCallback& progress, ColmapDatabase* database,
                               BusyTime* time) {
@@ -65,8 +65,8 @@ void WarnOfSeveralCameras(const std::string& path, const ColmapDatabase& databas
       path, kinds.size());
 }
 
-// The tracking that the database holds. For photographs, and if the earlier import searched other
-// frames of the video, the state before the first frame.
+// Returns the tracking state of the database. For photographs, and if the earlier import searched
+// other frames of the video, returns the state before the first frame.
 TrackingState ContinuedTracking(const MarkerImporterOptions& options,
                                 const ColmapDatabase& database) {
   TrackingState first;

@@ -21,8 +21,9 @@ namespace velamap {
 struct MarkerImporterOptions {
   std::string image_path;     // folder of images, or a video file
   std::string database_path;  // created, or added to
-  // For one image size; scaled for frames of the same aspect ratio, and turned as EXIF says. Empty
-  // if it is unknown: the database gets a guess, on which the corners do not depend.
+  // Calibrated for one image size; scaled for frames of the same aspect ratio, and turned as their
+  // EXIF orientation says. Empty if the camera is unknown: the database then gets a guess, which
+  // does not affect the corners.
   std::optional<Camera> camera;
   std::string camera_path;  // for messages only
   Layout layout;

@@ -9,7 +9,7 @@
 
 namespace velamap {
 
-// What tells the pages of several cameras apart.
+// Describes the source of a calibration, so that the pages of several cameras can be told apart.
 struct CalibrationSource {
   std::string pictures;     // name of the clip or the folder
   std::string camera_file;  // name of the file that the calibration is in

@@ -40,7 +40,7 @@ double CoveredShare(const CameraCalibration& calibration) {
   return static_cast<double>(num_covered) / static_cast<double>(counts.size());
 }
 
-// Parts of the picture of whose cells half or more are empty.
+// Parts of the picture in which at least half of the cells are empty.
 std::vector<std::string> EmptyParts(const CameraCalibration& calibration) {
   const PictureGrid grid = calibration.Grid(kNumCoverageCells);
   const std::vector<int> counts = CountInCells(calibration.UsedViews(), grid);
@@ -83,7 +83,7 @@ class Judge {
   }
 
  private:
-  // A model that was asked for can be the wrong one.
+  // A camera model that the user has chosen can be the wrong one.
   void JudgeModel() {
     constexpr double kMuchBetter = 0.9;
     const CameraModelScore& taken = calibration_.Score();

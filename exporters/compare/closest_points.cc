@@ -45,10 +45,10 @@ double TrimmedRms(const std::vector<PointResidual>& residuals) {
 
 using Motion = Eigen::Matrix<double, 6, 1>;  // rotation times the radius of the points, translation
 
-// The share of each step that is taken. A point whose foot changes from one triangle to the next
-// finds another normal there, and whole steps can go round in circles of a few hundredths of a
-// millimetre for ever. A step back halves the share, and steps in one direction restore it (like
-// Rprop; Riedmiller and Braun, 1993).
+// The share of each step that is taken. When the foot of a point moves to another triangle, the
+// normal changes, so whole steps may circle forever within a few hundredths of a millimetre. A step
+// back halves the share, and steps in one direction restore it (like Rprop; Riedmiller and Braun,
+// 1993).
 class StepShare {
  public:
   double Next(const Motion& motion) {
@@ -63,10 +63,10 @@ class StepShare {
   double share_ = 1.0;
 };
 
-// One Gauss-Newton step, or the part of it that `share` allows (null for all); returns how far it
-// moves the points at most. Nearest points and weights change with every step, so that
-// MinimizeSquares() has no cost by which to judge it: with damping, fits from far away ended in
-// worse poses.
+// Takes one Gauss-Newton step, or the part of it that `share` allows (null for all), and returns
+// the largest movement of a point. MinimizeSquares() is not used, because nearest points and
+// weights change with every step, so costs are not comparable: with its damping, fits from far away
+// ended in worse poses.
 double Step(const std::vector<PointResidual>& residuals, const std::vector<double>& weights,
             StepShare* share, Rigid3* pose) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();

@@ -1,5 +1,4 @@
-// Poses of points on a surface by iterative closest points (see mesh_fit.h). Private to
-// mesh_fit.cc.
+// Poses of points on a surface by iterative closest points, which mesh_fit.cc uses.
 
 #pragma once
 

@@ -43,7 +43,7 @@ std::string NameOfShape(const std::string& path) {
   return folder.has_filename() ? folder.filename().string() : file;
 }
 
-// Only the markers are compared yet.
+// A comparison of the markers alone; surfaces are added later.
 Comparison WithoutSurfaces(const std::string& name, ShapeDeviation deviation,
                            const Layout& layout) {
   Comparison comparison;

@@ -44,9 +44,9 @@ class AlignmentSensitivity {
                                                       const PointCovariance& shape,
                                                       const PointCovariance* reference) const;
 
-  // Variance, m^2, that the noise of one shape gives to a place on it along a direction, both in
-  // the frame of the reference. `own` is the gradient of the place along the direction without what
-  // its corners do to the alignment. Nothing if the covariance lacks one of the corners.
+  // Variance, m^2, of a point on one shape along a direction, from the noise of that shape; point
+  // and direction are in the frame of the reference. `own` is the gradient of the point along the
+  // direction for a fixed alignment. Nothing if the covariance lacks one of the corners.
   std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
                                    const Eigen::Vector3d& direction, CornerGradient own,
                                    ComparedShape whose, const PointCovariance& covariance) const;
@@ -62,14 +62,14 @@ class AlignmentSensitivity {
   // 1 / radius_m_.
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
-  // Adds to the gradient of direction . (a place of the aligned shape) what its corners do to the
-  // alignment.
+  // Adds the effect of the corners on the alignment to the gradient of direction . x, where x is a
+  // point of the aligned shape.
   void AddAlignment(const Eigen::Vector3d& x_in_reference_m, const Eigen::Vector3d& direction,
                     CornerGradient* gradient) const;
-  // As a function of the corners of one shape in its own frame. The reference's errors enter with
-  // the opposite sign, which does not change a covariance.
+  // Converts the gradient to the frame of the shape whose corners it refers to. The reference's
+  // errors enter with the opposite sign, which does not change a covariance.
   PointGradient InFrameOf(ComparedShape whose, const CornerGradient& gradient) const;
-  // Of the centre of a marker, from the noise of one shape.
+  // Covariance of the centre of a marker, from the noise of one shape.
   std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker,
                                                   ComparedShape whose,
                                                   const PointCovariance& covariance) const;

@@ -76,7 +76,7 @@ bool HaveSameEnds(const Section& a, const Section& b) {
          a.markers.back().marker_id == b.markers.back().marker_id;
 }
 
-// The boom, or the name of the section from which twist counts; empty for a part without both.
+// The reference of the twist: the boom or a section; empty for a part with neither.
 std::string TwistReference(const SectionReport& report, const std::string& part) {
   const auto rig = std::find_if(report.rigs.begin(), report.rigs.end(),
                                 [&](const RigNumbers& item) { return item.part == part; });
@@ -176,7 +176,7 @@ MarkerShape MarkersOnSurface(const ShapeDeviation& deviation) {
     if (deviation.surface_sigma_m > 0) {
       marker.sigma_m.fill(Eigen::Vector3d::Constant(deviation.surface_sigma_m));
     }
-    // As a whole, because corners may lie far beyond the edge of the design.
+    // Moves the marker as a whole, because its corners may lie far beyond the edge of the design.
     for (auto& x : marker.x_in_shape_m) *x -= compared.distance_m * compared.normal;
     moved.markers.push_back(marker);
   }

@@ -11,10 +11,12 @@
 
 namespace velamap {
 
-// A misfit above this is that of another object: no trim of a sail comes near.
+// A larger misfit means that the shapes are of different objects. No change of a sail's trim comes
+// near this value.
 inline constexpr double kMaxMisfit = 0.3;
 
-// Of the common markers of one part, after an alignment with scale.
+// How much two shapes agree: the misfit of the common markers of one part after an alignment with
+// scale.
 struct ShapeLikeness {
   double scale = 1.0;       // shape / reference
   double distance_m = 0.0;  // left between the corners, root mean square, in the reference's metres
@@ -26,13 +28,14 @@ struct ShapeLikeness {
   bool IsOfAnotherObject() const { return misfit > kMaxMisfit; }
 };
 
-// Takes the part that agrees best, because another one may have been trimmed. Parts are those of
-// `layout` or, without markers there, those of the shape; with fewer than three whole markers in
-// common in each of them, all markers are one part. Nothing if these are fewer than three, too.
+// Measures the part that agrees best, because the other parts may have been trimmed. Parts are
+// those of `layout` or, without markers there, those of the shape; with fewer than three whole
+// markers in common in each of them, all markers are one part. Nothing if these are fewer than
+// three, too.
 std::optional<ShapeLikeness> MeasureLikeness(const MarkerShape& shape, const MarkerShape& reference,
                                              const Layout& layout);
 
-// What speaks against a comparison, with the remedy.
+// A reason to doubt a comparison, with the remedy.
 struct ComparisonDoubt {
   bool is_bad = false;  // otherwise something to check
   std::string reason;   // begins with a small letter, no full stop

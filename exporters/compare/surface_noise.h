@@ -1,5 +1,5 @@
 // The noise of a surface that is compared, from the joint covariance of the markers that it was
-// fitted to, so that it agrees with the sigmas of the markers themselves. Private to this folder.
+// fitted to, so that it agrees with the sigmas of the markers themselves.
 
 #pragma once
 

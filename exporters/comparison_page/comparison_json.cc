@@ -102,7 +102,7 @@ Json ShapeJson(const Comparison& comparison) {
   return json;
 }
 
-// The one in the same row of the table of numbers; null without one.
+// The difference in the same row of the table of numbers; null if there is none.
 const SectionDifference* FindDifference(const std::vector<SectionDifference>& differences,
                                         const SectionDifference& like) {
   const auto it =

@@ -85,8 +85,8 @@ std::string SurfaceText(const DeflectionField& field) {
                      percent < 1 ? "less than 1" : fmt::format("{:.0f}", percent));
 }
 
-// What differs significantly, of all that the items name: a number of a section, else the markers,
-// else a surface. Nothing is said to differ only if none of them does.
+// Names what differs significantly: a number of a section, otherwise the markers, otherwise a
+// surface. Says that nothing differs only if none of them does.
 std::string SignificanceClause(const std::vector<Comparison>& series) {
   const Comparison& comparison = series.front();
   const ShapeDeviation& deviation = comparison.deviation;

@@ -1,4 +1,4 @@
-// A comparison in plain words. Private to the comparison's page.
+// A comparison in plain words.
 
 #pragma once
 

@@ -55,7 +55,7 @@ Coefficients FitHeights(const MeshDistance& mesh, const TangentFrame& frame) {
   const auto add = [&](const Eigen::Vector3d& x_m) {
     const MeshFoot sample = mesh.Project(x_m);
     const double height_m = frame.Height_m(sample.x_m);
-    // Beside the mesh, or on another side of a fold.
+    // Skips samples beside the mesh or on another side of a fold.
     if (!sample.IsOverSurface(mesh.Diagonal_m()) || std::abs(height_m) > frame.radius_m) return;
     const Coefficients terms = TermsAt(frame.Place(sample.x_m));
     normal += terms * terms.transpose();
@@ -70,7 +70,7 @@ Coefficients FitHeights(const MeshDistance& mesh, const TangentFrame& frame) {
     }
   }
   if (num_samples < normal.rows()) return Coefficients::Zero();
-  // Keeps terms at zero that the samples leave open, as along a strip, and hardly changes others.
+  // Keeps terms at zero that the samples do not determine, as along a strip. Hardly changes others.
   normal.diagonal().array() += 1e-8 * num_samples;
   return normal.ldlt().solve(right);
 }

@@ -148,7 +148,7 @@ struct ChildAnswer {
   int status;  // as of waitpid()
 };
 
-// Nothing if the child does not end in time or answers without end.
+// Returns nothing if the child does not end in time or if its answer is too long.
 std::optional<ChildAnswer> ReadAnswer(const ChildProcess& child, std::chrono::seconds limit) {
   constexpr std::size_t kMaxSize =
       kMaxMeshElements * (sizeof(Eigen::Vector3d) + sizeof(std::array<int, 3>)) + 1024;

@@ -21,8 +21,8 @@ struct Extremes {
   double bend_uu = 0, bend_uv = 0, bend_vv = 0;  // largest |second derivative|, m
 };
 
-// Takes the whole second derivative, because it moves the chord near a fold of the parameters also
-// within the tangent plane.
+// Uses the whole second derivative and not only its normal part, because near a fold of the
+// parameters the chord also deviates within the tangent plane.
 Extremes FindExtremes(const SplineSurface& surface) {
   Extremes extremes;
   const std::vector<double> vs = SpanSamples(surface.knots_v);

@@ -46,8 +46,8 @@ struct GridData {
 void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out,
                   const GridData& data = {});
 
-// Gmsh 2.2 ASCII: quadrilaterals, of which those with two corners in one place are triangles, in a
-// physical surface that is called `name`.
+// Gmsh 2.2 ASCII: quadrilaterals in a physical surface with the given `name`. A cell with two
+// corners in one place becomes a triangle.
 void WriteGridMsh(const SurfaceGrid& grid, const std::string& name, LengthUnit unit,
                   std::ostream& out);
 

@@ -58,13 +58,12 @@ struct FreeformSurface {
 constexpr std::size_t kMinFreeformMarkers = 4, kMaxFreeformMarkers = 1000;
 constexpr std::size_t kMaxFreeformTriangles = 1'000'000;
 
-// Unless `mesh` asks for something else, the edges of the mesh are at most half of
-// `marker_length_m` long, or longer if equilateral triangles of that side would number more than
-// 100 000. Markers that are not connected to most of the others are left out. Throws DataError for
-// too few or too many markers, if fewer than half of them are connected because they are in distant
-// groups or face different directions, and if they contradict one another. Throws InputError if
-// `mesh` asks for more than kMaxFreeformTriangles. The result does not depend on `num_threads` (0:
-// one per core).
+// Unless `mesh` sets other limits, the edges of the mesh are at most half of `marker_length_m`
+// long, or longer if equilateral triangles of that side would number more than 100 000. Markers
+// that are not connected to most of the others are left out. Throws DataError for too few or too
+// many markers, if fewer than half of them are connected because they are in distant groups or face
+// different directions, and if they contradict one another. Throws InputError if `mesh` requires
+// more than kMaxFreeformTriangles. The result does not depend on `num_threads` (0: one per core).
 FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
                                    double marker_length_m, const std::optional<MeshOptions>& mesh,
                                    int num_threads = 0);

@@ -11,14 +11,14 @@
 namespace velamap {
 namespace {
 
-// How far the calibration that fits the residuals best would move the shape: the sigmas take the
-// given one for granted.
+// Limits of how far the calibration that fits the residuals best would move the shape, in sigmas
+// that assume that the given calibration is right.
 constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
-// A single parameter is named if it explains at least this share of what all of them explain.
+// A parameter is named alone if it explains at least this share of what all parameters explain.
 constexpr double kDecisiveShare = 0.7;
 
-// Nobody gave a calibration that could be wrong: the pictures do not determine the camera, for the
-// reason that a warning names where the geometry is weak.
+// Advice for a camera found from the pictures. No given calibration can be wrong, so the pictures
+// do not determine the camera. If the geometry is weak, the warning about it is the advice.
 std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
   const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
   if (weak != warnings.end()) return *weak;

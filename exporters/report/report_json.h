@@ -1,4 +1,4 @@
-// Parts of the report's JSON. Private to the report.
+// Parts of the report's JSON.
 
 #pragma once
 

@@ -33,7 +33,7 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   });
 }
 
-// Nothing where it is unknown how well the scale is known.
+// 1 sigma of the scale; nothing if it is unknown.
 std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
   if (!scale.relative_sigma || std::isnan(*scale.relative_sigma)) return std::nullopt;
   return 100 * *scale.relative_sigma;
@@ -55,7 +55,7 @@ void JudgeScaleSigma(const ScaleEstimate& scale, KeyNumber* number) {
   }
   const std::string reason = scale.num_markers == 1
                                  ? "the size rests on one marker, so its error is unknown"
-                                 : "nothing tells how well the size is known";
+                                 : "the uncertainty of the size is unknown";
   number->meaning += "; " + reason;
   number->advice =
       reason + ": use more markers of known size, or measure a distance (distances, use: scale)";

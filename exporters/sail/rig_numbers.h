@@ -1,4 +1,4 @@
-// Bend and sag of the luff, and the sheeting angle, with their sigmas. Private to the sections.
+// Bend and sag of the luff, and the sheeting angle, with their sigmas.
 //
 // The luff is the smoothing spline (section_spline.h) through the first markers of the horizontal
 // lines, and through all markers of a vertical line that holds at least half of these.

@@ -53,8 +53,8 @@ struct SailShape {
   std::vector<SailSurface> surfaces;  // by part in the layout's order
   // One line per part without a surface, with the reason, and one per gap or outlier of a fit.
   std::vector<std::string> surface_notes;
-  // The first error of a surface that the markers are not to blame for, such as an option beyond
-  // the limit that the size of the part sets; null without one.
+  // The first error of a surface fit that the markers did not cause, such as an option that is out
+  // of range for the size of the part; null if there is none.
   std::exception_ptr surface_error;
 };
 

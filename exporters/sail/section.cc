@@ -122,8 +122,8 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   section->num_missing_at_leech = static_cast<int>(last - of_line.rbegin());
 }
 
-// A height takes from the lines next to it, below and above, the larger number of missing markers.
-// The first `num_lines` sections are lines, from the lowest up; the others are heights.
+// The number of missing markers of a height is the larger one of the lines next to it, below and
+// above. The first `num_lines` sections are lines, from the lowest up; the others are heights.
 void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sections) {
   for (std::size_t i = num_lines; i < sections->size(); ++i) {
     Section& height = (*sections)[i];
@@ -241,7 +241,7 @@ OptionGroup DescribeOptions(SectionOptions* options) {
           {{"Section.heights", ParsedValue{&options->heights_m, "", set_heights}, "m,m,...",
             "heights of sections besides the lines, along the luff from the frame's origin"},
            {"Section.min_markers", &options->min_markers, "markers",
-            "fewest whole markers on a line that make a section", AtLeast(4)}}};
+            "minimum number of whole markers on a line for a section", AtLeast(4)}}};
 }
 
 void SectionOptions::Check() const {

@@ -1,5 +1,4 @@
 // Curves through the horizontal lines of one part, and cuts at right angles to up between them.
-// Private to the sections.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // The numbers of one section curve, and their derivatives with respect to the marker centres for
-// their sigmas. Private to the sections.
+// their sigmas.
 
 #pragma once
 
@@ -79,7 +79,7 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
 // The azimuth of the pair; the other numbers are zero.
 NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair);
 
-// Numbers as a function of the centres, of which only the one with this index has moved.
+// Numbers as a function of the centres; only the centre with this index has moved.
 using NumbersFunction = std::function<Eigen::VectorXd(const MarkerCenters& centers, int index)>;
 
 // Their derivatives, with respect to the listed markers by central differences; zero for others.

@@ -19,7 +19,7 @@ Estimate Difference(SectionNumber number, const MarkerCenters& centers,
 // from foot to head or, like some, from head to foot.
 bool LacksLowerLine(const PartContext& context) {
   const std::vector<LineCurve>& lines = context.curves.lines;
-  if (lines.size() < 2) return false;  // a single section is not twisted against any other
+  if (lines.size() < 2) return false;  // a single section has no twist relative to another
   const int lowest = lines.front().place_in_layout;
   const bool is_downwards = lines.back().place_in_layout < lowest;
   const std::vector<MarkerLine>& of_layout = context.part.horizontal;

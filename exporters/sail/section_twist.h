@@ -1,6 +1,6 @@
-// Twist, and the section from which it counts: the lowest one whose line is whole at both ends. The
-// chord of a line that lacks an end points elsewhere, by degrees, of which the sigmas of the
-// markers that are there know nothing. Private to the sections.
+// Twist, relative to the lowest section whose line has its markers at both ends. A line that lacks
+// an end has a chord in another direction, by degrees, and the sigmas of its other markers do not
+// include this error.
 
 #pragma once
 
@@ -17,7 +17,7 @@ namespace velamap {
 struct ReferenceSection {
   std::optional<std::size_t> line_idx;  // into PartCurves::lines; nothing without such a section
   std::string name;                     // of its line; empty without one
-  bool is_lowest = false;               // of the lines of which the layout makes sections
+  bool is_lowest = false;               // of the lines that should have a section
 
   std::string Text() const;  // "lowest section", "section h2" or "none"
 };
@@ -26,14 +26,15 @@ struct ReferenceSection {
 ReferenceSection ChooseReferenceSection(const PartContext& context,
                                         const std::vector<Section>& sections);
 
-// Sets the twists of all sections, whose numbers are in `numbers`, from the lines on. `boom` is its
-// azimuth, or null without a boom. What lacks a reference gets no twist.
+// Sets the twists of all sections. `numbers` holds the numbers of each section, those of the lines
+// first. `boom` is the azimuth of the boom, or null without one. A twist without a reference is
+// left empty.
 void SetTwists(const PartContext& context, const std::vector<NumbersWithGradient>& numbers,
                const ReferenceSection& reference, const NumbersWithGradient* boom,
                std::vector<Section>* sections);
 
-// Which numbers refer to that section, where it is not the lowest one, or are left out without one;
-// empty otherwise.
+// Returns a note on the numbers that refer to a section other than the lowest one, or that are left
+// out because there is no reference; empty if neither applies.
 std::string ReferenceNote(const ReferenceSection& reference, const std::string& part, bool has_boom,
                           bool has_centerline);
 

@@ -1,4 +1,4 @@
-// How well a surface is known, including the errors that its markers share. Private to this folder.
+// How well a surface is known, including the errors that its markers share.
 
 #pragma once
 

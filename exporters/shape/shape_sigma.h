@@ -15,9 +15,10 @@ namespace velamap {
 void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
                       PointGradient* gradient);
 
-// The corners of a marker share the error of its centre and have errors of their own, which do not
-// move the centre: independent ones less their mean. The variance of these independent errors, m^2,
-// from the mean variance of the corners and the variance of the centre.
+// Returns the variance (m^2) of the independent errors of a marker's corners, from the mean
+// variance of the corners and the variance of the centre. The model: all corners share the error of
+// the centre, and each has an independent error less the mean of all four, so that these do not
+// move the centre.
 double OwnVarianceOfCorners(double mean_of_corners_m2, double of_center_m2);
 
 // Gradient of the distance between two points of the shape (corner 0 is the centre), which have to
@@ -52,7 +53,7 @@ std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covari
 // four corners are known, mm; by marker id.
 std::map<int, double> CenterSigmas_mm(const PointCovariance& covariance);
 
-// The median over the markers, of which there must be one at least.
+// The median over the markers. There must be at least one.
 double MedianSigma(const std::map<int, double>& sigma_by_marker);
 
 }  // namespace velamap

@@ -115,8 +115,8 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
   return residuals;
 }
 
-// Sets what each point of a marker adds to the poles. A point of a given edge errs like the nearest
-// marker.
+// Sets how the poles depend on each point of a marker. A point of a given edge is taken to have the
+// error of the nearest marker.
 void AddDependence(const SurfaceParameters& parameters, const std::vector<SurfaceTerm>& terms,
                    const SmoothSurface& smooth, FittedSurface* result) {
   const auto& observations = parameters.observations;

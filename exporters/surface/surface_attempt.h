@@ -10,8 +10,8 @@
 namespace velamap {
 
 // Adds the notes that `fit` returns to `notes` or, if it throws, one that says why `part` has no
-// surface. The first exception other than DataError is kept in `first_error`, because the markers
-// are not to blame for it.
+// surface. Keeps the first exception other than DataError in `first_error`, because the markers did
+// not cause it.
 void TryFitSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
                    std::vector<std::string>* notes, std::exception_ptr* first_error);
 

@@ -20,9 +20,10 @@ OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& e
 void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
                        SurfaceParameters* parameters);
 
-// For surfaces that interpolate, whose lines keep their chord lengths: the first moves the corners
-// of each marker around its place, the second the markers on no line of the fit, none beyond the
-// edge. Corners follow a smooth surface only, because they have no feet on one that swings.
+// For interpolating surfaces, where the markers on lines keep their chord lengths. The first
+// function moves the corners of each marker around the marker's place; they must follow a smooth
+// surface, because on one that oscillates they have no feet. The second moves the markers on no
+// line of the fit to their feet, but none beyond the edge.
 void MoveCornersAroundMarkers(const SplineSurface& surface, SurfaceParameters* parameters);
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 

@@ -50,11 +50,12 @@ struct SurfaceInput {
   std::string luff_note{}, leech_note{};
 };
 
-// Collects the horizontal lines of `part` in the order of the layout, its other markers, and where
-// the layout says that its edges are; whole markers only. The sigma of a marker is the root mean
-// square of the three sigmas of its centre, with the errors that it shares with others: neighbours
-// share some that bend the surface, which the noise of single markers does not show. The sigma of
-// its tilt follows from what the sigmas of the corners exceed it by.
+// Collects the horizontal lines of `part` in the order of the layout, its other markers, and the
+// places of its edges from the layout. Uses whole markers only. The sigma of a marker is the root
+// mean square of the three sigmas of its centre, with the errors that it shares with others:
+// neighbours share some that bend the surface, which the noise of single markers does not show. The
+// sigma of its tilt follows from the part of the corners' variances that exceeds the variance of
+// the centre.
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
 
 }  // namespace velamap

@@ -192,7 +192,7 @@ template <typename Score>
 Choice Search(const System& system, const Solution& parabolic,
               const std::optional<SmoothingWeights>& near, const Score& score_of) {
   Choice best;
-  best.solution = parabolic;  // stays where too few observations have a score
+  best.solution = parabolic;  // kept if too few observations give a score
   const auto is_better = [&](const SmoothingWeights& weights, Solution solution) {
     const double score = score_of(solution);
     if (!(score < best.score)) return false;

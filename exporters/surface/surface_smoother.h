@@ -14,7 +14,7 @@ namespace velamap {
 // How the weights of the penalties are chosen.
 enum class Smoothing {
   kParabolas,        // the largest ones: profiles of the second degree along and across the lines
-  kInterpolate,      // the least ones that double precision allows
+  kInterpolate,      // the smallest ones that double precision allows
   kKnownSigma,       // Mallows' Cp, with weights of 1 / sigma^2
   kCrossValidation,  // generalized; only the ratios of the weights count
 };
@@ -60,8 +60,9 @@ Eigen::RowVectorXd PoleShares(const SplineSurface& surface, double u, double v);
 std::optional<double> SigmaAt(const SplineSurface& surface,
                               const Eigen::MatrixXd& pole_covariance_m2, double u, double v);
 
-// Looks for the weights around `near`, such as those of nearly the same terms, without it
-// everywhere. Throws DataError if the equations have no solution in double precision.
+// Searches for the weights around `near`, such as those found for nearly the same terms, or over
+// their whole range if it is not given. Throws DataError if the equations have no solution in
+// double precision.
 SmoothSurface SmoothTerms(const SurfaceParameters& parameters,
                           const std::vector<SurfaceTerm>& terms, Smoothing smoothing,
                           const std::optional<SmoothingWeights>& near = std::nullopt);

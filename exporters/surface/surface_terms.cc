@@ -15,8 +15,8 @@ namespace velamap {
 
 namespace {
 
-// Makes a surface fair that few markers without sigmas would let swing between them. Ten times more
-// or less hardly changes it.
+// A nominal sigma that keeps the surface fair where few markers without sigmas would let it
+// oscillate between them. A value ten times larger or smaller hardly changes the surface.
 double NominalSigma(const SortedInput& sorted) {
   constexpr double kOfDiagonal = 3e-5;  // 0.1 mm on a sail of 3 m
   Eigen::AlignedBox3d box;
@@ -24,7 +24,8 @@ double NominalSigma(const SortedInput& sorted) {
   return kOfDiagonal * box.diagonal().norm();
 }
 
-// The noise that residuals show which a fit with so many parameters has made smaller.
+// The noise of the observations, from the residuals of a fit with so many parameters, which made
+// the residuals smaller than the noise.
 double NoiseOf(std::vector<double> residuals, double num_parameters) {
   const auto num = static_cast<double>(residuals.size());
   for (double& residual : residuals) residual = std::abs(residual);
@@ -114,7 +115,8 @@ std::map<int, double> TiltSigmas(const std::vector<SurfaceObservation>& observat
       NoiseOf(residuals, smooth.leverages.tail(smooth.leverages.size() - n).sum());
   const double place_noise =
       NoiseOf({places.begin(), places.end()}, smooth.leverages.head(n).sum());
-  // A surface too stiff for exact places does not show that their tilts are better.
+  // Not below 1, because a surface that is too stiff for exact places does not show that tilts are
+  // more accurate.
   const double factor = std::max(tilt_noise / place_noise, 1.0);
   if (!std::isfinite(factor) || tilt_noise <= 0) return noise.tilt_sigma_m;
   std::map<int, double> sigmas_m;

@@ -1,5 +1,4 @@
-// What the markers say about a surface: where each of them lies and how it is tilted. Private to
-// this folder.
+// The observations of a surface: where each marker lies and how it is tilted.
 
 #pragma once
 
@@ -39,7 +38,7 @@ void AddTiltTerms(const std::vector<SurfaceObservation>& observations,
 // The sigmas of the tilts as the residuals show them, by marker id. All are as much larger than
 // those of `noise` as the residuals of the tilts are, compared with those of the places, but never
 // smaller: the ratio of two variance components (Förstner, "Ein Verfahren zur Schätzung von
-// Varianz- und Kovarianzkomponenten", 1979), from medians. A marker that is tilted against the
+// Varianz- und Kovarianzkomponenten", 1979), from medians. A marker that is tilted relative to the
 // others, such as a peeling one, gets Cauchy's weight. `smooth` fits the places and, if it has more
 // terms, the tilts.
 std::map<int, double> TiltSigmas(const std::vector<SurfaceObservation>& observations,

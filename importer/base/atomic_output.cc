@@ -88,8 +88,8 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
   }
 }
 
-// Calls `write` with the path of a temporary sibling of `target`, which is then renamed. Creates
-// the missing parents. Messages name `shown_path`.
+// Calls `write` with the path of a temporary sibling of `target`, and then renames the sibling to
+// `target`. Creates missing parents. Messages name `shown_path`.
 void ReplaceFile(const fs::path& target, const fs::path& shown_path,
                  const std::function<void(const fs::path&)>& write) {
   CreateFolders(target.parent_path());
@@ -118,9 +118,9 @@ void WriteAndRename(const fs::path& path, bool is_synced,
   });
 }
 
-// Messages name `from` if that cannot be read, and else `shown_to`.
+// Messages name `from` if it cannot be read, otherwise `shown_to`.
 void CopyFile(const fs::path& from, const fs::path& to, const fs::path& shown_to) {
-  OpenFile source(from, O_RDONLY | O_NONBLOCK);  // waits for no writer of a pipe
+  OpenFile source(from, O_RDONLY | O_NONBLOCK);  // does not wait for the writer of a pipe
   struct stat status {};
   if (source.number() < 0 || fstat(source.number(), &status) != 0) ThrowCannotRead(from, errno);
   if (!S_ISREG(status.st_mode)) ThrowCannotRead(from, ENOTSUP);
@@ -138,7 +138,7 @@ void CopyFile(const fs::path& from, const fs::path& to, const fs::path& shown_to
       }
     }
   }
-  fchmod(copy.number(), status.st_mode & 0777);  // some file systems know no such rights
+  fchmod(copy.number(), status.st_mode & 0777);  // some file systems have no permissions
   if (!copy.Close()) ThrowCannotWrite(shown_to, std::strerror(errno));
 }
 
@@ -157,7 +157,7 @@ AtomicFolder::AtomicFolder(const fs::path& path) : path_(CanonicalPath(path)) {
   CheckReplaceableFolder(path_);
   CreateFolders(path_.parent_path());
   std::error_code error;
-  do {  // a killed run of the same process number may have left a folder
+  do {  // a killed run with the same process id may have left a folder
     temporary_path_ = TemporarySibling(path_);
   } while (!fs::create_directory(temporary_path_, error) && !error);
   if (error) ThrowCannotWrite(path_, error.message());

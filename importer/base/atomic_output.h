@@ -1,6 +1,7 @@
-// Atomic output: it is written to a temporary sibling, which is renamed when it is complete. A link
-// stays a link, and its target is replaced. Write-protected files are not replaced. Temporary
-// siblings of a killed run are removed when the next run writes to the same folder.
+// Writes output atomically: to a temporary sibling that replaces the target by a rename once it is
+// complete. Symbolic links are followed, so the link stays and its target is replaced.
+// Write-protected files are never replaced. The next run that writes to the folder removes what a
+// killed run left there.
 
 #pragma once
 
@@ -47,7 +48,7 @@ void WriteFileAtomicallyUnsynced(const std::filesystem::path& path,
 // The same without the rename, for files inside an AtomicFolder.
 void WriteFile(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-// Copies a file; what `to` held is replaced. The copy takes no space where the file system can
+// Copies a file, replacing the content of `to`. The copy takes no space where the file system can
 // share blocks. Throws InputError that names the file which cannot be read or written.
 void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
@@ -55,8 +56,8 @@ void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to
 // Creates the missing parents of `to`. Throws InputError as CopyFile() does.
 void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Renames a file, which replaces `to`; copies it where they are in different file systems. Creates
-// the missing parents of `to`.
+// Renames a file, replacing `to`, or copies it if they are in different file systems. Creates the
+// missing parents of `to`.
 void MoveFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Waits until everything that was written to the file system of `folder` has reached the disk.

@@ -34,9 +34,9 @@ std::string ReadHolder(int file) {
   return std::string(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
 }
 
-// Waits a moment for a holder that has the lock and has not written its record yet.
+// Waits up to a second for a holder that has the lock but has not written its record yet.
 std::string WaitForHolder(int file) {
-  constexpr int kMaxNumTries = 200;  // a second: it may have lost its processor just then
+  constexpr int kMaxNumTries = 200;  // the scheduler may have paused it just then
   for (int i = 0;; ++i) {
     const std::string text = DescribeLockHolder(ReadHolder(file), std::time(nullptr), HostName());
     if (!text.empty() || i == kMaxNumTries) return text;
@@ -111,9 +111,9 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
         return;
       }
       throw InputError(
-          fmt::format("{}: another velamap works here{}{}; wait until it has finished, or choose "
-                      "another folder",
-                      what, holder.empty() ? "" : " ", holder));
+          fmt::format("{}: another velamap process is using it{}; wait until it has finished, or "
+                      "choose another folder",
+                      what, holder.empty() ? "" : " (" + holder + ")"));
     }
     if (!IsLockOfOurs(file)) {
       close(file);

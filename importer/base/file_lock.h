@@ -16,7 +16,7 @@ std::string DescribeLockHolder(const std::string& record, std::time_t now, const
 
 class FileLock {
  public:
-  // Takes the lock whose file is `path`, and writes since when and by which process it is held.
+  // Acquires the lock file `path` and records the time, process and host of the holder in it.
   // Throws InputError, which begins with `what` and names the holder, if another process or
   // FileLock holds it, or if a file of this name is not one of ours. If the lock file cannot be
   // opened, the run continues without a lock, because writing will normally fail as well and report

@@ -53,13 +53,14 @@ fs::path FromRoot(const fs::path& path) {
                   Shown(path), error.message()));
 }
 
-// A name that no folder of a user has.
+// A name that no user gives to a folder.
 constexpr std::string_view kScratchName = ".velamap_scratch_XXXXXX";
 constexpr std::string_view kScratchPrefix = kScratchName.substr(0, kScratchName.find("XXXXXX"));
 constexpr char kScratchLock[] = "lock";
 
-// Removes a folder for temporary files of a run that was killed: nobody holds its lock. The lock is
-// missing where the run was killed before it had made it, or while it removed the folder.
+// Removes a folder for temporary files if nobody holds its lock, because its run was killed. The
+// lock file is missing if the run was killed before it created the lock or while it removed the
+// folder.
 void RemoveIfAbandoned(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(folder, error))) return;
@@ -103,7 +104,7 @@ std::uintmax_t FileSize(const fs::path& path) {
 }
 
 fs::path AbsolutePath(const fs::path& path) {
-  // The folder above a link is that of the folder it leads to, not that of the link.
+  // After a link, ".." means the parent of the folder that the link leads to.
   fs::path result;
   for (const fs::path& part : FromRoot(path)) {
     if (part == "..") {
@@ -180,7 +181,7 @@ std::vector<fs::path> FilesBelow(const fs::path& folder) {
     if (!entered.insert(CanonicalPath(current)).second) continue;
     for (const fs::path& entry : FolderEntries(current)) {
       if (entry.filename().string().front() == '.') continue;
-      std::error_code ignored;  // of a link to nothing
+      std::error_code ignored;  // set by a dangling link
       if (fs::is_directory(entry, ignored)) {
         (IsLink(entry) ? linked_folders : folders).push_back(entry);
       } else {
@@ -207,8 +208,7 @@ TemporaryFolder::TemporaryFolder() {
     error = std::make_error_code(std::errc::not_a_directory);
   }
   if (!error) RemoveAbandoned(parent);
-  // Another run that comes between the folder and the lock takes the folder for abandoned, and
-  // removes it.
+  // Before the folder is locked, another run may take it for abandoned and remove it.
   constexpr int kMaxNumTries = 100;
   for (int i = 0; !error && i < kMaxNumTries; ++i) {
     std::string pattern = (parent / kScratchName).string();

@@ -27,7 +27,8 @@ bool IsLink(const std::filesystem::path& path) noexcept;
 
 std::uintmax_t FileSize(const std::filesystem::path& path);
 
-// Without "." and "..", with links as they are named: for what people read.
+// Returns the absolute path without "." and "..". Links are not resolved, so that messages show the
+// path as the user knows it.
 std::filesystem::path AbsolutePath(const std::filesystem::path& path);
 
 // Where the file is, or will be when it is written: all links are followed, including dangling
@@ -43,10 +44,10 @@ std::string LowerExtension(const std::filesystem::path& path);
 // Everything in the folder, sorted by name.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 
-// Files in the folder and below, in no particular order; among them pipes, devices and links to
-// nothing, so that the reader can name what it cannot read. Links are followed, but each folder is
-// visited once, under its real path if that lies in this tree. Files and folders whose name starts
-// with a dot are left out.
+// Returns all files in the folder and its sub-folders, in no particular order. Pipes, devices and
+// dangling links are included, so that the caller can report them. Links are followed, but each
+// folder is visited once, under its real path if that lies in this tree. Files and folders whose
+// name starts with a dot are left out.
 std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
 
 // Creates the folder and its missing parents; nothing happens if it is there.

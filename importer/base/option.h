@@ -19,7 +19,7 @@
 
 namespace velamap {
 
-// A value that has a conversion of its own, such as one of a few names.
+// Target of an option whose text needs its own conversion, such as one of a fixed set of names.
 struct ParsedValue {
   const void* member = nullptr;  // what `set` sets
   std::string default_text;
@@ -27,8 +27,8 @@ struct ParsedValue {
   std::function<void(const std::string& text, const std::string& option)> set;
 };
 
-// What an option sets. The value that is there when the option is declared is the default; a bool
-// is written 0 or 1, an optional has none.
+// The variable that an option sets. Its value at declaration is the default. A bool is given as 0
+// or 1; a std::optional has no default.
 using OptionTarget =
     std::variant<std::string*, int*, double*, std::optional<double>*, bool*, ParsedValue>;
 
@@ -76,17 +76,18 @@ struct Option {
   const std::string* beside = nullptr;
   std::string name_beside = {};
   bool is_common = false;
-  std::vector<std::string> choices = {};  // all that it takes, where these are a few names
+  // Accepted values of an option that takes one of a fixed set of names; otherwise empty.
+  std::vector<std::string> choices = {};
 };
 
 Option PathOption(const std::string& name, PathUse use, std::string* path,
                   const std::string& description);
 
-// An option that most people need: --help shows it, and the required ones; --help_all shows all.
+// Marks an option as common: --help lists common and required options, --help_all lists all.
 Option Common(Option option);
 
-// The file `name` beside `folder` is meant where the option is left out. A * at the beginning of
-// the name stands for the name of `folder` without its ending.
+// Sets the default of a path option: the file `name` next to `*folder`. A leading * in `name`
+// stands for the stem of `*folder`: next to phone.yml, *.html is phone.html.
 Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name);
 
 struct OptionGroup {
@@ -101,7 +102,8 @@ std::optional<double> NumberOf(const OptionTarget& target);
 // such as --Video.first_frame.
 void CheckRange(const Option& option, const std::string& given_as);
 
-// "--Video.first_frame" for the option that sets `member`, which has to be one of the group's.
+// Returns "--Video.first_frame" for the option that sets `member`. The group must have such an
+// option.
 std::string OptionName(const OptionGroup& group, const void* member);
 
 // Throws InputError for the first of the options that is out of its range. Takes a copy, because
@@ -120,7 +122,7 @@ std::string OptionName(Member Options::*member) {
   return OptionName(DescribeOptions(&options), &(options.*member));
 }
 
-// Logs that `given` is an old name, still understood, of `name`.
+// Warns that `given` is an old name of `name`, which is still understood.
 void WarnAboutOldName(const std::string& given, const std::string& name);
 
 // Index of the name that is `text`. Throws InputError that begins with `option` and lists the

@@ -37,7 +37,7 @@ void ParallelFor(std::size_t count, int num_threads, const std::function<void(st
   try {
     while (threads.size() + 1 < num_wanted) threads.emplace_back(run);
   } catch (const std::system_error&) {
-    // The system starts no more threads: the others share the work.
+    // The system cannot start more threads; the others share the work.
   }
   run();
   for (std::thread& thread : threads) thread.join();

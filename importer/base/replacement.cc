@@ -68,7 +68,8 @@ bool BeginsAsOneOfOurs(const std::string& text) {
          (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
 }
 
-// Also for a text without a seal, as earlier versions wrote it; but layouts are made to be edited.
+// Also true for a text without a seal, because earlier versions wrote none, but not for a layout,
+// because people edit layouts.
 bool HasItsSeal(const std::string& text) {
   const std::size_t seal = text.rfind(kSeal);
   if (seal == std::string::npos) return !IsProposedLayout(text);
@@ -79,13 +80,13 @@ bool HasItsSeal(const std::string& text) {
          text.substr(hash, kHashDigits) == HashText(Hash(text.substr(0, line)));
 }
 
-// What step commands write beside their results.
+// Whether the path is a table or log that the commands for single steps write beside their results.
 bool IsTableOrLogOfOurs(const fs::path& path) {
   const bool is_name = path.filename() == "registration.csv" || path.filename() == "colmap.log";
   return is_name && IsRegularFile(path) && !IsLink(path) && BeginsAsOneOfOurs(ReadBytes(path));
 }
 
-// The device and number of a file that exists, which all its names share.
+// Device and inode of an existing file, which are the same for all of its names.
 using FileId = std::pair<dev_t, ino_t>;
 
 struct Place {
@@ -127,7 +128,7 @@ struct UnfinishedName {
   pid_t process_id = 0;
 };
 
-// Machines may share a folder over the network, and containers a machine; each numbers its
+// Identifies the machine and the container, because several may share a folder and each numbers its
 // processes separately.
 std::string ThisMachine() {
   std::array<char, HOST_NAME_MAX + 1> name{};
@@ -277,7 +278,7 @@ fs::path TemporarySibling(const fs::path& path) {
     try {
       RemoveUnfinished(folder);
     } catch (const InputError&) {
-      // A folder that cannot be listed can be written to all the same.
+      // A folder that cannot be listed may still be writable.
     }
   }
   constexpr std::size_t kMaxNameSize = 180;  // with what is added, a name has at most 255 bytes

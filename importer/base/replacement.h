@@ -1,15 +1,16 @@
 // What velamap may replace, and what it may not: the one rule for all commands.
 //
-//   file     one that the user has named as output, unless it is also an input or the output of
-//            another option, possibly under another name. Under a default name, and for layouts and
-//            calibrations, which people write and edit, only a file that velamap wrote
-//            (CheckOwnFile)
-//   folder   as a whole, unless it is write-protected, if velamap wrote every file in it and nobody
-//            has changed one since. Each folder that velamap writes holds a record of its files,
-//            kFolderRecord
-//   picture  in a folder of pictures: only frames that velamap wrote (video/written_frame.h)
+//   file     An output that the user has named is replaced, unless it is also an input or another
+//            output, possibly under another name. At default paths, and for layouts and
+//            calibrations, which people edit, only files that velamap wrote are replaced
+//            (CheckOwnFile()).
+//   folder   Replaced as a whole, if velamap wrote every file in it, nobody has changed one since,
+//            and it is not write-protected. Each folder that velamap writes holds a record of its
+//            files (kFolderRecord).
+//   picture  In a folder of pictures, only frames that velamap wrote are replaced
+//            (video/written_frame.h).
 //
-// Names that come from files must not lead to other places: CheckImageName().
+// Image names that are read from files must not lead out of their folder (CheckImageName()).
 
 #pragma once
 
@@ -44,8 +45,8 @@ bool IsOwnFile(const std::filesystem::path& path);
 // velamap's own. Nothing happens if it is missing.
 void CheckOwnFile(const std::string& used_by, const std::filesystem::path& path);
 
-// `text` and a last line, a comment, with the hash of it. The line begins with `comment_begin` and
-// ends with `comment_end`, such as "# " and "".
+// Returns `text` with a seal: a last line that is a comment and holds the hash of `text`. The line
+// begins with `comment_begin` and ends with `comment_end`, such as "# " and "".
 std::string WithSeal(const std::string& text, const std::string& comment_begin,
                      const std::string& comment_end);
 
@@ -60,9 +61,13 @@ struct UsedPath {
   bool replaces_only_own = false;   // outputs only: a file that CheckOwnFile() has to allow
 };
 
-// Throws InputError, naming both options, if an output is one of the inputs or another output, also
-// through links, or lies in a folder that is replaced, if such a folder holds an input or is not
-// replaceable, or if a file is not velamap's where only such a one may be replaced.
+// Throws InputError that names the option, if an output
+//
+//   - is one of the inputs or another output, also through links (names both options)
+//   - is a folder to be replaced that holds an input or another output (names both options)
+//   - is a folder to be replaced that is not replaceable (CheckReplaceableFolder())
+//   - is a write-protected file
+//   - is a file that velamap did not write, where only velamap's own may be replaced
 void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPath>& outputs);
 
 // Throws InputError that begins with `where` if the name of an image leads out of the folder of
@@ -74,9 +79,9 @@ void CheckImageName(const std::string& name, const std::string& where);
 // write to it. Nothing happens if it is missing.
 void CheckNotProtected(const std::filesystem::path& path);
 
-// Where output is written until it is finished: beside its place, under a name that no other
-// process or thread uses. Removes what killed runs have left there (RemoveUnfinished()), once per
-// folder.
+// Returns the path at which output is written until it is finished: in the same folder, under a
+// name that no other process or thread uses. Removes what killed runs have left in the folder
+// (RemoveUnfinished()), once per folder.
 std::filesystem::path TemporarySibling(const std::filesystem::path& path);
 
 // The path that unfinished output will have when it and the folders that hold it have been renamed.

@@ -17,7 +17,7 @@ double Seconds(clockid_t clock) {
 BusyTime Now() { return {Seconds(CLOCK_MONOTONIC), Seconds(CLOCK_THREAD_CPUTIME_ID)}; }
 
 struct ThreadClock {
-  int stage = kNoStage;  // charged at the moment
+  int stage = kNoStage;  // the stage to which time is charged now
   BusyTime since;
   ImportTimes times;
 };

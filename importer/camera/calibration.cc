@@ -193,14 +193,15 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string::npos || line[begin] == '#') continue;
     const std::string place = fmt::format("{}:{}", path, line_number);
-    if (camera) Fail(place, "a second camera; all frames have one camera, so keep one line");
+    if (camera)
+      Fail(place, "a second camera; velamap expects one camera for all frames, so keep one line");
     camera = ParseColmapCameraLine(line, place);
   }
   if (!camera) Fail(path, "holds no camera");
   return *camera;
 }
 
-// Numbers beyond these are of no camera, and later steps would blame other input.
+// Rejects values that no real camera has, because later steps would fail and blame other input.
 void CheckRangeOfParams(const Camera& camera, const std::string& path) {
   constexpr double kMaxSides = 1e4;
   const double side_px = std::max(camera.width_px, camera.height_px);

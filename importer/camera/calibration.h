@@ -19,8 +19,8 @@ namespace velamap {
 // Throws InputError that names the file, the key or line, and what was expected.
 Camera ReadCalibration(const std::string& path);
 
-// Whether the camera has pictures of this size, smaller or larger: the aspect ratio is the same to
-// half a pixel.
+// Whether images of this size have the camera's aspect ratio, to half a pixel, so that scaling
+// adapts the camera to them.
 bool IsPureScale(const Camera& camera, int width_px, int height_px);
 
 // Returns the camera for frames of another size, with its parameters scaled. Throws InputError,

@@ -16,19 +16,19 @@ struct EstimatedCamera {
   std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
 };
 
-// 1 sigma of the focal length, percent. Up to the good value, a camera that was found from one clip
-// serves others.
+// 1 sigma of the focal length, in percent of it. A camera estimated from one clip is good enough
+// for others up to kGoodFocalSigma_percent.
 double FocalSigma_percent(const EstimatedCamera& found);
 inline constexpr double kGoodFocalSigma_percent = 1.0;
 
 // k1, k2, p1, ... of the distortion parameter at `index`.
 const char* DistortionName(CameraModel model, std::size_t index);
 
-// An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and three for the reader,
-// which other programs ignore: focal_length_sigma_px (x, y), principal_point_sigma_px (x, y) and
-// distortion_sigma, in the order of distortion_coefficients. Models with one focal length or fewer
-// coefficients become the OpenCV model that holds them exactly. `origin` says in one line where the
-// camera comes from; it becomes a comment in the file.
+// An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and three more for people
+// who read the file, which programs ignore: focal_length_sigma_px (x, y), principal_point_sigma_px
+// (x, y) and distortion_sigma, in the order of distortion_coefficients. Models with one focal
+// length or fewer coefficients become the OpenCV model that holds them exactly. `origin` says in
+// one line where the camera comes from; it becomes a comment in the file.
 std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin);
 
 // Writes the text to `path`, whole or not at all. Throws InputError where that fails.

@@ -50,8 +50,9 @@ Intrinsics GetIntrinsics(const Camera& camera) {
   return {{p[0], p[1]}, {p[2], p[3]}, p + 4};
 }
 
-// Whether the rational model passes a pole on the way to a ray of this length. Where numerator and
-// denominator nearly cancel each other, it is too narrow to be seen in the image.
+// Whether the rational model has a pole between the optical axis and a ray of this length. The
+// denominator shows it, whereas a pole at which numerator and denominator nearly cancel is too
+// narrow to be noticed in the image.
 bool IsBeyondPole(const Camera& camera, double ray_length) {
   if (camera.model != CameraModel::kFullOpenCV) return false;
   const double* k4 = GetIntrinsics(camera).distortion + 5;
@@ -139,7 +140,7 @@ bool HasMonotonicDistortion(const Camera& camera) {
   constexpr int kNumDirections = 64;
   constexpr double kMaxRayLength = 12.0;  // 85 degrees
   const Intrinsics intrinsics = GetIntrinsics(camera);
-  // So small beside the image that no fold hides between two steps.
+  // Small relative to the image, so that no fold stays hidden between two steps.
   const double step =
       0.01 * std::hypot(camera.width_px, camera.height_px) / intrinsics.focal_px.maxCoeff();
   if (!(step > 0)) return false;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kMaxDepth = 16, kMaxValues = 2'000'000;
 
-// What messages call a file.
+// The path of a file and what it is, for messages.
 struct NamedFile {
   std::string path, kind;
 };
@@ -33,7 +33,7 @@ struct NamedFile {
   FailForm(file, fmt::format("nested more than {} deep", kMaxDepth));
 }
 
-// Whether OpenCV reads the scalar as a number; else it is a text.
+// Whether OpenCV reads the scalar as a number; otherwise it reads a text.
 bool IsNumber(const YAML::Node& scalar) {
   constexpr std::size_t kMaxLength = 40;
   static const std::regex pattern(
@@ -52,8 +52,8 @@ std::string Quoted(const std::string& text) {
   return quoted + '"';
 }
 
-// Writes what yaml-cpp has read as OpenCV would have written it: block maps, and lists in brackets.
-// Visits each value as often as aliases repeat it.
+// Writes a YAML document as OpenCV would have written it: block maps, and lists in brackets. Visits
+// a value once for each alias that repeats it.
 class YamlWriter {
  public:
   explicit YamlWriter(const NamedFile& file) : file_(file) {}
@@ -76,7 +76,7 @@ class YamlWriter {
     static const std::regex name("[A-Za-z_][A-Za-z0-9_-]{0,100}");
     Count(depth);
     for (const auto& child : map) {
-      // No other key and no key without a value is asked for.
+      // Skips keys that no caller reads: those with other names, and those without a value.
       const bool is_wanted = child.first.IsScalar() && !child.second.IsNull() &&
                              std::regex_match(child.first.Scalar(), name);
       const std::size_t end = text_.size();
@@ -109,7 +109,8 @@ class YamlWriter {
       if (num_written > 0 && num_written % kValuesPerLine == 0) {
         text_ += '\n' + std::string(static_cast<std::size_t>(3 * depth + 3), ' ');
       }
-      // Lists of maps are of other programs; their maps count, but are not written.
+      // Only other programs write lists of maps. Their maps count towards the limit, but are not
+      // written.
       const std::size_t end = text_.size();
       WriteValue(value, depth);
       if (!value.IsScalar() && !value.IsSequence()) text_.replace(end, std::string::npos, "\"\"");
@@ -123,8 +124,8 @@ class YamlWriter {
   int num_values_ = 0;
 };
 
-// JSON, too: it is YAML, and OpenCV writes numbers such as 300. that only YAML allows. One document
-// is read, because yaml-cpp does not end on some texts of several.
+// Reads JSON as YAML, because OpenCV writes numbers such as 300. into JSON, which only YAML allows.
+// Reads one document only, because yaml-cpp does not terminate on some texts with several.
 std::string RewrittenYaml(const std::string& text, const NamedFile& file) {
   const std::size_t begin = text.find("\n---"), end = text.find("\n...");
   const bool begins_twice =
@@ -136,7 +137,7 @@ std::string RewrittenYaml(const std::string& text, const NamedFile& file) {
   YAML::Node document;
   try {
     document = YAML::Load(text);
-  } catch (const YAML::Exception& exception) {  // beyond a depth of 500, too
+  } catch (const YAML::Exception& exception) {  // also for a depth of more than 500
     FailForm(file, exception.what());
   }
   if (!document.IsMap()) FailForm(file, "its top level is not a map of keys");
@@ -177,10 +178,10 @@ cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
   try {
     cv::FileStorage storage(rewritten, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (storage.isOpened()) {
-      storage["any_key"];  // throws where OpenCV takes for text what the checks took for a map
+      storage["any_key"];  // throws if OpenCV reads text where the checks saw a map
       return storage;
     }
-  } catch (const cv::Exception&) {  // its words name lines of the rewritten text
+  } catch (const cv::Exception&) {  // its message refers to lines of the rewritten text
   }
   throw InputError(
       fmt::format("{}: not a readable {}; expected keys with values, as OpenCV writes them in "

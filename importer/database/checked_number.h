@@ -1,4 +1,4 @@
-// Checks of the tables of velamap, which anybody may have changed.
+// Validates the values in velamap's own tables, because another program may have edited them.
 
 #pragma once
 

@@ -77,11 +77,11 @@ void ColmapDatabase::OpenForWriting(int busy_timeout_ms) {
   // An absolute path, because SQLite gives names such as :memory: and file:a a special meaning.
   database_ = std::make_unique<SQLite::Database>(
       CanonicalPath(path_).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms);
-  // Matches of a pair take some kilobytes, which fill pages of the usual 4096 bytes badly. SQLite
-  // ignores this for a database that has tables.
+  // The matches of a pair take a few kilobytes, which would waste space in pages of the default
+  // 4096 bytes. SQLite ignores this setting if the database already has tables.
   database_->exec("PRAGMA page_size = 16384");
-  // Takes the write lock, so that a locked or read-only file is reported here. Nothing is written
-  // to a file that has tables: one that is refused stays as it is.
+  // Acquires the write lock, so that a locked or read-only file is reported here. Does not write to
+  // a file that already has tables, so a file that is refused stays as it is.
   SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
   if (IsFresh(*database_)) {
     CreateTables(database_.get());
@@ -97,7 +97,7 @@ void ColmapDatabase::OpenForReading(int busy_timeout_ms) {
   // A connection without write access would leave -wal and -shm files beside a database that COLMAP
   // has put into write-ahead mode. SQLite falls back to reading if the file is write-protected.
   database_ = std::make_unique<SQLite::Database>(file, SQLite::OPEN_READWRITE, busy_timeout_ms);
-  // Leaves a log that another program has written in place.
+  // Does not remove a write-ahead log that another program has written.
   if (has_log) {
     sqlite3_db_config(database_->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   }

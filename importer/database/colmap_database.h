@@ -64,8 +64,8 @@ class ColmapDatabase {
   };
 
   // Adds the camera unless the database holds an equal one. Returns its id. A camera that is not
-  // calibrated is a guess to begin with: prior_focal_length is 0, as COLMAP's own programs write
-  // it.
+  // calibrated is only an initial guess, so its prior_focal_length is 0, as COLMAP's own programs
+  // write it.
   CameraId AddCamera(const Camera& camera, bool is_calibrated = true);
   std::map<CameraId, Camera> ReadCameras() const;
   // Whether all cameras are calibrated; also true if there are none.
@@ -96,7 +96,8 @@ class ColmapDatabase {
   // refuse to mix two ways; nothing if there are no detections.
   std::optional<std::string> ReadDetector() const;
 
-  // What camera and print do to edges, which is estimated once for all images of a database.
+  // The image formation (how camera and print displace edges), which is estimated once for all
+  // images of a database.
   void WriteFormation(const FormationEstimate& estimate);
   // Throws InputError for values that no estimate gives.
   std::optional<FormationEstimate> ReadFormation() const;

@@ -25,7 +25,7 @@ Descriptor EncodeDescriptor(const CornerId& id);
 // Returns the corners of the markers that both images show, as keypoint indices.
 FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetections& image2);
 
-// Largest number of images of which all pairs are matched.
+// Up to this number of images, all pairs are matched.
 constexpr int kMaxNumExhaustive = 50;
 
 // Returns the pairs of images whose matches are written (first < second, indices into `images`,

@@ -54,7 +54,7 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
 
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
-  // Columns that an earlier velamap did not have, with what it assumed.
+  // Columns that earlier versions lacked, with the values that these versions assumed.
   const std::set<std::string> columns = ColumnNames(*database, "image_formation");
   if (columns.empty()) return std::nullopt;
   std::string missing;

@@ -1,5 +1,5 @@
-// The table image_formation that velamap adds to COLMAP's: its one row is what camera and print do
-// to edges. README.md of this folder describes its columns.
+// The table image_formation that velamap adds to COLMAP's: its one row holds the image formation
+// (how camera and print displace edges). README.md of this folder describes its columns.
 //
 // Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
 

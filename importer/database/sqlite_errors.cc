@@ -20,7 +20,7 @@ void ThrowInputError(const std::string& path, const SQLite::Exception& exception
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
-      message = "cannot be opened for writing; check the folder and the rights";
+      message = "cannot be opened for writing; check the folder and its permissions";
       break;
     case SQLITE_NOTADB:
       message = "no SQLite database";

@@ -25,10 +25,10 @@ constexpr double kSigmaOfEdgeWidth = 0.02;
 // Half a window around a corner as a fraction of the distance to the nearest other one, so that the
 // window holds the edges of no other corner.
 constexpr double kWindowOfSquare = 0.4;
-// Half a window at most, in px and in widths of an edge. The lens bends the edges, and an edge of
-// curvature k moves the corner by up to 0.13 k w^2 for a half window w: by 0.4 px in the squares of
-// 200 px of a wide action camera at 4K if the square alone sets the window, by 0.01 px with 12 px.
-// A blurred edge needs a wider window; the shift then stays far below a sigma.
+// Limits of half a window, in px and in widths of an edge. The lens bends the edges, and an edge of
+// curvature k shifts the corner by up to 0.13 k w^2 for half a window of w. In squares of 200 px of
+// a wide action camera at 4K this is 0.4 px if only the square limits the window, and 0.01 px with
+// 12 px. A blurred edge needs a wider window; the shift then stays far below a sigma.
 constexpr double kMaxWindowPx = 12.0, kMaxWindowOfEdgeWidth = 2.0;
 
 // The corners in the image, row by row.
@@ -61,14 +61,14 @@ CornerGrid QuarterTurned(const CornerGrid& grid) {
   return turned;
 }
 
-// Whether columns and rows turn in the image the other way round than x and y do.
+// Whether the turn from columns to rows is opposite to the turn from x to y of the image.
 bool IsMirrored(const CornerGrid& grid) {
   const cv::Point2f x = grid.At(grid.num_columns - 1, 0) - grid.At(0, 0);
   const cv::Point2f y = grid.At(0, grid.num_rows - 1) - grid.At(0, 0);
   return x.cross(y) < 0;
 }
 
-// In the middle of the square between the corners of these columns and rows.
+// Grey level in the middle of the square whose first corner is in this column and row.
 double GrayOfSquare(const cv::Mat& gray, const CornerGrid& grid, int column, int row) {
   return NearestGray(gray, 0.25F * (grid.At(column, row) + grid.At(column + 1, row) +
                                     grid.At(column, row + 1) + grid.At(column + 1, row + 1)));
@@ -78,7 +78,7 @@ bool BeginsDark(const cv::Mat& gray, const CornerGrid& grid) {
   return GrayOfSquare(gray, grid, 0, 0) < GrayOfSquare(gray, grid, 1, 0);
 }
 
-// How far the columns go to the right and the rows down.
+// How well the columns run to the right and the rows downwards: at most 2.
 double Uprightness(const CornerGrid& grid) {
   const cv::Point2f x = grid.At(grid.num_columns - 1, 0) - grid.At(0, 0);
   const cv::Point2f y = grid.At(0, grid.num_rows - 1) - grid.At(0, 0);
@@ -102,8 +102,8 @@ CornerGrid Oriented(const cv::Mat& gray, CornerGrid grid) {
   });
 }
 
-// The first corners of the blocks of two along `num` corners; of an odd number one in the middle is
-// left out, because the outer ones say most about the lens.
+// The first corners of the blocks of two along `num` corners. If the number is odd, one in the
+// middle is left out, because the outer ones tell most about the lens.
 std::vector<int> BlockBegins(int num) {
   const int num_blocks = num / 2;
   std::vector<int> begins;
@@ -127,8 +127,8 @@ double SquareSidePx(const CornerGrid& grid, int column, int row) {
   return side_px;
 }
 
-// Moves the corners to where the lines through the gradients of their edges meet. The peaks of the
-// search are up to a pixel off, most where the picture is small, blurred or free of noise.
+// Moves the corners to where the lines through the gradients of their edges meet. The corners of
+// the search are off by up to a pixel, most in small, blurred or noise-free pictures.
 CornerGrid Refined(const cv::Mat& gray, const CornerGrid& grid, double edge_width_px) {
   constexpr int kMinHalfWindowPx = 2, kMaxIterations = 30;
   constexpr double kLeastStepPx = 1e-3;

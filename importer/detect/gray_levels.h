@@ -1,4 +1,4 @@
-// What counts as a marker in grey levels (0..255), for everything that looks at its edges.
+// Thresholds on grey levels (0 to 255) that all measurements of marker edges share.
 
 #pragma once
 
@@ -8,8 +8,8 @@ namespace velamap {
 // noise can look like a marker of less contrast.
 inline constexpr double kMinContrast = 12.0;
 
-// The largest RMS residual of a fit, relative to the contrast. A fit that leaves more has fitted
-// something else.
+// The largest RMS residual of a fit, relative to the contrast. A fit with a larger residual has
+// fitted something other than the marker.
 inline constexpr double kMaxRelativeRms = 0.2;
 
 // 1 sigma of the noise of a pixel, grey levels; sets how much the priors of a fit weigh.

@@ -18,7 +18,8 @@ namespace {
 constexpr double kMinCorrelation = 0.8;
 constexpr double kSureCorrelation = 0.9;  // the search does not go further out
 
-// How far the grey level of a cell has to be from the middle one, as a fraction of the contrast.
+// The minimum difference of the grey level of a cell from the middle level, as a fraction of the
+// contrast.
 constexpr double kMinCellContrast = 0.1;
 
 // The pixel at the centre of each cell of the marker, and of one ring of light cells around it.
@@ -86,7 +87,7 @@ class ShiftSearch {
     }
   }
 
-  // The shifts of a grid around `center` that are `ring` steps away.
+  // Tries the shifts of a grid around `center` that are `ring` steps away from it.
   void TryRing(const cv::Point& center, int ring, int step) {
     for (int y = -ring; y <= ring; ++y) {
       const int next = std::abs(y) == ring ? 1 : 2 * ring;

@@ -10,8 +10,8 @@
 
 namespace velamap {
 
-// The marker within `reach_px` of `expected`, which has its shape to about a cell. Nothing unless
-// all cells look as they should; corners are good to a tenth of a pixel.
+// Returns the corners, to a tenth of a pixel, of the marker within `reach_px` of `expected`, whose
+// shape must be right to about one cell. Returns nothing unless all cells look as they should.
 std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& expected,
                                         const MarkerLook& look, double reach_px);
 

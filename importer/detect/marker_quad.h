@@ -18,7 +18,7 @@ struct MarkerQuad {
 
 using QuadById = std::map<int, QuadCorners>;
 
-// Without the ids that are found more than once.
+// Returns the markers whose id was found exactly once.
 inline QuadById SingleMarkers(const std::vector<MarkerQuad>& found) {
   QuadById quads;
   std::set<int> twice;

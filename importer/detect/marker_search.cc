@@ -21,8 +21,8 @@ constexpr int kMinBorderDistancePx = 3;  // of a corner
 // or 2.8 n where it is turned by 45 degrees. Without this bound, each dot of a small dithered
 // picture is an outline to decode.
 constexpr double kLeastContourPxPerCell = 2.5;
-// Of a second look around an outline, which may lie two pixels inside its marker. All else reaches
-// as many pixels of the enlarged picture as of the image at the first look.
+// Reach of a second look around an outline: two pixels, because the outline may lie that far inside
+// its marker, plus the reach of the first look in pixels of the enlarged picture.
 constexpr int kSecondReachPx = 2 + (kSearchReachPx + kEnlargement - 1) / kEnlargement;
 
 // For a region of an image; the smallest perimeter is relative to the size of the image, but at
@@ -49,8 +49,8 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   parameters->minDistanceToBorder = kMinBorderDistancePx;
   parameters->markerBorderBits = border_bits;
   parameters->errorCorrectionRate = options.error_correction_rate;
-  // OpenCV truncates the product of rate and size to whole pixels; half a pixel more makes it the
-  // number of the whole image.
+  // OpenCV truncates the product of rate and region size to whole pixels. Half a pixel more makes
+  // the result perimeter_px, the same as for the whole image.
   const double perimeter_px = std::max(
       std::floor(options.min_marker_perimeter_rate * image_size_px), std::floor(least_contour_px));
   parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
@@ -64,8 +64,8 @@ cv::Rect Grown(const cv::Rect& rect, int by_px) {
 
 bool Contains(const cv::Rect& outer, const cv::Rect& inner) { return (outer & inner) == inner; }
 
-// Whether the outline is darker on its inside, as that of a marker is. The edge of its paper on a
-// darker ground is not, but may give the same code.
+// Whether the image is darker inside the outline than outside, as it is for a marker. The edge of
+// the marker's paper on a darker ground may give the same code, but is lighter inside.
 bool IsDarkInside(const cv::Mat& gray, const std::vector<cv::Point2f>& outline_px) {
   constexpr int kNumSamples = 8;  // of a side
   constexpr float kOffsetPx = 1.5F;
@@ -167,14 +167,15 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   if (!looks_again) return;
   for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, search.NumCells())) {
     const cv::Rect around = cv::boundingRect(outline_px);
-    // What the border of the region cuts belongs to another region.
+    // An outline near the border of the region is left to another region.
     if (Contains(region, Grown(around, kSearchReachPx) & search.Image())) {
       LookAgain(search, Grown(around, kSecondReachPx) & search.Image(), quads);
     }
   }
 }
 
-// Searches the regions and, where they cut into the pixels that a marker depends on, around it.
+// Searches the regions. Where a region cuts off pixels on which a marker depends, searches around
+// the marker again.
 std::vector<MarkerQuad> SearchRegions(const Search& search, const std::vector<cv::Rect>& regions,
                                       bool looks_again) {
   std::vector<MarkerQuad> quads;

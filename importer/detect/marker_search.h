@@ -24,8 +24,8 @@ inline constexpr int kSearchReachPx = 6 + 4;
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options);
 
-// The same without a second look at outlines whose code cannot be read (second_look.h): for the
-// many dictionaries that may be tried, of which all but one are wrong.
+// The same without a second look at outlines whose code cannot be read (second_look.h): for trying
+// many dictionaries, because all but one are wrong.
 std::vector<MarkerQuad> SearchMarkersAtFirstLook(const cv::Mat& gray, const Dictionary& dictionary,
                                                  int border_bits,
                                                  const ArucoDetectionOptions& options);

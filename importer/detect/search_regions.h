@@ -20,7 +20,7 @@ cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px);
 // The region to search for a marker whose place is known to `margin_px`.
 cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
 
-double AreaOf(const std::vector<cv::Rect>& regions);  // px; overlaps count more than once
+double AreaOf(const std::vector<cv::Rect>& regions);  // px^2; overlaps count more than once
 
 // Rectangles that cover all `regions`, joined where one costs less than two.
 std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);

@@ -11,9 +11,10 @@ namespace velamap {
 
 using Outline = std::vector<cv::Point2f>;  // four corners in OpenCV's pixel frame
 
-// The outlines to look at again: small ones (of cells up to 4 px, which is enough for a blur of
-// 1.5 px), and of several that lie over each other the largest, unless one of `read` lies there.
-// `num_cells`: along a side of a marker, with its border.
+// Returns the outlines of `rejected` to search again: those with cells of at most 4 px, a limit
+// that suffices for a blur of 1.5 px. Of outlines that lie over each other it returns only the
+// largest, and none that lies over one of `read`. `num_cells` is the number of cells along a side
+// of a marker, including its border.
 std::vector<Outline> UnreadOutlines(const std::vector<Outline>& read, std::vector<Outline> rejected,
                                     int num_cells);
 

@@ -14,10 +14,11 @@ double ShareBeyondNoise(double shift, double sigma) {
   return std::max(0.0, 1 - sigma * sigma / (shift * shift));
 }
 
-// The share of a disagreement between inner edges and outlines that outlines cause. `leverage`: by
-// how many px the corners would move for each px of it if outlines caused it all, 1 to 6. It grows
-// where the blur mixes small cells, and inner edges are less certain there. The numbers come from
-// draws of workflows/studies/camera_draws.sh and from compressed pictures of small markers.
+// The share of a disagreement between inner edges and outlines that the outlines cause. `leverage`
+// (1 to 6) is the movement of the corners per px of disagreement if the outlines caused all of it.
+// It is larger where the blur mixes small cells, which also makes inner edges less certain. The
+// numbers come from draws of workflows/studies/camera_draws.sh and from compressed pictures of
+// small markers.
 double ShareOfOutlines(double leverage) {
   constexpr double kLargestShare = 0.7, kTurningLeverage = 3.0;
   return kLargestShare / (1 + std::pow(leverage / kTurningLeverage, 4));

@@ -1,4 +1,5 @@
-// The shifts of edges that no description of the camera explains, from the places of inner edges.
+// Corrects the edge shifts that the image formation leaves unexplained, using the measured
+// positions of inner edges.
 
 #pragma once
 

@@ -27,9 +27,10 @@ struct ShiftSums {
   double shift() const { return squares > 0 ? by_residual / squares : 0.0; }
 };
 
-// Sums over the edges that the rows of the image cross, over those that its columns cross, and for
-// the distance of the marker's corners from its centre: over all edges, and over those far from the
-// corners of outlines, which some filters round further than pixels are left out elsewhere.
+// Sums over the edges that the rows of the image cross, and over those that its columns cross; and
+// sums for the distance of the marker's corners from its centre, over all edges and over those far
+// from the corners of outlines. Some filters round these corners farther than the pixels that are
+// left out elsewhere.
 struct SampleShift {
   ShiftSums across_rows, across_columns, outwards, outwards_far_from_corners;
 };

@@ -18,8 +18,8 @@ cv::Point PatchFromBox(const PatternProblem& problem) {
   return problem.box.tl() - problem.patch.origin_px;
 }
 
-// Modelled grey values minus those of the patch, which is without the sharpening, in the box of the
-// problem; zero where no pixel counts.
+// Modelled grey values minus those of the patch, from which the sharpening has been removed, in the
+// box of the problem; zero for pixels that do not count.
 VELAMAP_CLONE_FOR_AVX2 cv::Mat Differences(const FittedSample& sample) {
   const PatternProblem& problem = sample.problem;
   const PatternPicture picture(problem.model, sample.minimum.parameters);

@@ -18,9 +18,9 @@ using State = FormationState;
 // 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
 constexpr double kQuietZoneSigma = 0.25;
 
-// The samples fitted with a usual camera, except for the gamma and the sharpening that leave the
-// least noise; none if no fit succeeds. From a camera that hardly sharpens, the minimum of one that
-// sharpens much is not reached where white is clipped.
+// Fits the samples with a usual camera but several values of gamma and sharpening, and returns the
+// fit with the least noise; without samples if no fit succeeds. Where white is clipped, a start
+// with little sharpening does not reach the minimum of a camera that sharpens strongly.
 State BestStart(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 const ImageFormationParameters& formation, const FitWorkers& workers) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2}, kSharpenings[] = {0.1, 0.8};
@@ -64,8 +64,8 @@ void Minimize(const FormationPriors& priors, int max_iterations, const FitWorker
   MinimizeSquares(options, FormationProblem(priors, NoisesOf(*state), workers), state, &equations);
 }
 
-// Minimizes without the pixels at the corners of outlines first, then with the weight that their
-// residuals ask for.
+// Minimizes without the pixels at the corners of outlines first, and then with the weight that
+// follows from their residuals.
 State Minimized(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 bool is_inverted, const FitWorkers& workers) {
   constexpr int kMaxIterations = 6;
@@ -84,9 +84,9 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
 // Cameras denoise, sharpen and compress in ways that no parameter describes, and lenses do not blur
 // like a Gaussian. How far edges are moved beyond what the parameters explain, and how far inner
 // edges lie from where the best parameters leave them, shows how far a camera is from the model.
-// Half of the latter shift and 0.5 % of the blur are the errors of the insets of 64 cameras that
-// another renderer drew; a twentieth of the former is that of pictures after medians and bilateral
-// filters.
+// The factors are calibrated on pictures with known insets: 0.5 % of the blur and half of the
+// latter shift match the errors for 64 cameras drawn by another renderer; a twentieth of the former
+// shift matches the errors after median and bilateral filters.
 double InsetSigmaByModel(const State& winner, const State& balanced) {
   constexpr double kOfBlur = 0.005, kOfInnerShift = 0.5, kOfEdgeShift = 0.05;
   std::vector<double> blurs_px;
@@ -112,7 +112,7 @@ FormationEstimate Unknown() {
 
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     const FitWorkers& workers) {
-  constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
+  constexpr double kMinQuietZoneSigma = 0.1;  // cells; markers are cut with scissors
   constexpr int kFewIterations = 2;
   if (samples.size() < kMinFormationSamples) return Unknown();
   // Some of the samples nearly give the parameters; then all take few steps.
@@ -133,7 +133,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   const BalancedEdges outlines = WithBalancedOutlines(balanced.state, workers);
   const State& best = outlines.state;
   const double noise_gray = NoiseOf(best);
-  if (!std::isfinite(noise_gray)) return Unknown();  // no sample could be fitted once more
+  if (!std::isfinite(noise_gray)) return Unknown();  // no sample could be fitted again
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
   estimate.parameters.quiet_zone_sigma_cells =

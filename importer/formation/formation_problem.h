@@ -40,13 +40,13 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
   double Cost(const FormationState& state) const;
 
   // The part of FormationEstimate::inset_sigma_px that the parameters cause, at their minimum. The
-  // residuals of a sample have errors in common (which no parameter describes), so that the scatter
-  // of the samples' gradients gives the covariance (Huber 1967, White 1980), but few samples may
-  // agree by chance: it is no smaller than for independent residuals.
+  // residuals of a sample share errors that no parameter describes, so the covariance is the
+  // sandwich estimate over the samples (Huber 1967, White 1980). It is never smaller than for
+  // independent residuals, because few samples may agree by chance.
   double InsetSigma(const FormationState& state) const;
 
  private:
-  // How much each sample moves the mean inset.
+  // Influence of each sample on the mean inset.
   std::vector<double> InfluencesOf(const FormationState& state,
                                    const FormationVector& by_inset) const;
 

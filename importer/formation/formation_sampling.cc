@@ -42,7 +42,7 @@ SampleQuota QuotaOfFrame(int num_frames) {
 // How far a sample reaches beyond the marker.
 double SampleReachPx(double side_px) { return 0.6 * side_px + 8; }
 
-// Markers of the layout, spread over the better half by size.
+// Chooses markers of the layout, spread over the half whose size is nearest to kBestSidePx.
 std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const SampleQuota& quota,
                                       std::vector<MarkerQuad> quads) {
   quads.erase(std::remove_if(quads.begin(), quads.end(),
@@ -73,8 +73,8 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
   return chosen;
 }
 
-// The marker with its surroundings; nothing where its sides cannot be seen. A misread code would
-// show edges where there are none.
+// Returns the marker with its surroundings; nothing if its sides are not found. Its code is read
+// again, because a misread code would imply edges that are not there.
 std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv::Mat& gray,
                                          const MarkerQuad& found) {
   const cv::Rect cut = PixelsAround(BoundingBox(found.corners_px), gray.size(),
@@ -148,9 +148,9 @@ bool SampleFrames(const SampledSource& source, int num_frames, int stride, const
   return has_more;
 }
 
-// From the beginning of a video; later frames, farther apart, are added while too few markers are
-// found, to the end of the video while hardly any are. In a short video the frames are closer
-// together.
+// Samples frames at the beginning of a video. Adds later frames, farther and farther apart, while
+// too few markers are found, and continues to the end of the video if hardly any are. In a short
+// video the frames are closer together.
 std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
   const int num_in_video = source.frames->NumFrames();  // 0: unknown
@@ -167,7 +167,8 @@ std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   return samples;
 }
 
-// Up to 32 photographs are all used; of more, every k-th in the order of their names.
+// Samples all photographs if there are at most 32, otherwise every k-th in the order of their
+// names.
 std::vector<FormationSample> SamplePhotographs(const SampledSource& source) {
   constexpr int kMaxFrames = 32;
   const int num_images = std::max(1, source.frames->NumFrames());

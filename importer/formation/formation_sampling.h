@@ -1,4 +1,5 @@
-// How camera and print change edges in a source of frames: the first step of an import.
+// Estimates the image formation (how camera and print displace edges) from a source of frames: the
+// first step of an import.
 
 #pragma once
 

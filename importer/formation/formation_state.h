@@ -34,7 +34,7 @@ struct FormationState {
   std::shared_ptr<const ImageFormation> formation;
   std::vector<FittedSample> samples;
   // The states after a step of each parameter alone, for derivatives by differences; null until
-  // they are asked for.
+  // they are needed.
   mutable std::shared_ptr<const std::vector<FormationState>> moved;
 };
 
@@ -66,8 +66,8 @@ double NoiseOf(const FormationState& state);
 // The same of each sample alone.
 std::vector<double> NoisesOf(const FormationState& state);
 
-// The weight that the residuals of the pixels at the corners of outlines ask for, compared with the
-// residuals of the others.
+// Weight of the pixels at the corners of outlines: the squared ratio of the noise of the other
+// pixels to theirs, at most 1.
 double OutlineCornerWeight(const FormationState& state);
 
 FormationState WithOutlineCorners(double weight, const FormationState& state,

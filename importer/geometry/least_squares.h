@@ -92,7 +92,7 @@ struct LeastSquaresProblem {
   Step LimitStep(const Parameters&, const Step& step) const {
     return step;
   }
-  // Called where a last small step has been taken without an evaluation.
+  // Called instead of Evaluate() for a final step below min_step.
   void Predict(const Step&, Equations*) const {}
 };
 

@@ -1,4 +1,4 @@
-// The pose of a camera by what it looks at.
+// Pose of a camera from its position and the point that it looks at.
 
 #pragma once
 

@@ -191,8 +191,8 @@ std::vector<Rotations> AllBySymmetry(const CodeSpace& space) {
   return codes;
 }
 
-// Returns all codes without symmetry and the first symmetric ones, for more codes than there are
-// without symmetry.
+// Returns all codes without symmetry and the first symmetric ones. To be called if more codes are
+// wanted than exist without symmetry.
 CodeSet TakeSymmetricCodesToo(const CodeSearchOptions& options) {
   const int bits = options.bits_per_side;
   std::vector<Rotations> codes;

@@ -37,8 +37,8 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
   return modelled;
 }
 
-// Cuts the patch of the problem again, with the model's values for the pixels of its box that are
-// clipped and that the model has beyond their limit. False for none.
+// Cuts the patch of the problem again. Replaces the clipped pixels of its box by the model's values
+// where these are beyond the clipped ones. Returns false if there are none.
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
                           const PatternParameters::Vector& parameters, PatternProblem* problem) {
   const GrayPatch& patch = problem->patch;
@@ -92,7 +92,7 @@ bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box) {
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
   constexpr int kMaxRounds = 6;
-  constexpr double kLeft = 3.0;  // slow rounds leave this times their last step
+  constexpr double kLeft = 3.0;  // after a slow round, this many of its steps remain
   constexpr double kMinStepRatio = 0.2, kMaxStepRatio = 0.9;
   PatternParameters::Vector last_step = PatternParameters::Vector::Zero();
   for (int round = 0; round < kMaxRounds; ++round) {

@@ -45,8 +45,8 @@ Eigen::Vector2d InPatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
   return x_px - Eigen::Vector2d(patch.origin_px.x, patch.origin_px.y);
 }
 
-// What the halo adds to each pixel. `light` includes that; the light before it is to first order
-// light + halo (light - G light), and the halo spreads its share of this by G.
+// The light that the halo adds to each pixel. `light` includes it; without it, the light is to
+// first order light + halo (light - G light), and the halo spreads its share of that by G.
 cv::Mat ScatteredLight(const ImageFormationParameters& parameters, const cv::Mat& light) {
   const double halo = parameters.halo, radius_px = parameters.halo_radius_px;
   cv::Mat once, twice;

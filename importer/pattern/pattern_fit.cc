@@ -24,8 +24,7 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const PatternEquations& equations,
       inverse, [](const PatternEquations::Jacobian& jacobian) { return SquaredSlope(jacobian); });
 }
 
-// The priors stabilize weak parameters but are not observations, so that their error does not
-// count.
+// The priors stabilize weak parameters but are not observations, so their errors do not count.
 std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
                                               const PatternMinimum& minimum) {
   const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
@@ -94,7 +93,7 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   auto refined = WithUncertainty(*problem, minimum);
   if (!refined) return std::nullopt;
   refined->rms_gray = rms_gray;
-  // A cell of the other colour alone gives more.
+  // A single cell of the wrong colour leaves a larger residual.
   constexpr double kLargeRms = 0.05;  // of the contrast
   if (rms_gray > kLargeRms * ContrastOf(*problem, minimum)) {
     refined->mismatched_cells = MismatchedCells(*problem, minimum);

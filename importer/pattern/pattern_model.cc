@@ -32,7 +32,7 @@ class RingReading {
     return (i + 0.5) / n;
   }
 
-  // The other cells count as far inside.
+  // Only the cells of the outer ring are affected; all others are taken to lie wholly inside.
   Within Weights(int i, int n) const {
     if (i != -kRing && i != n + kRing - 1) return {};
     const double margin = i < 0 ? margin_low_ : margin_high_;

@@ -19,9 +19,10 @@ struct ChosenPixels {
   int count = 0;  // the last group may be incomplete
 };
 
-// About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
-// every k-th of those near an edge, which determine the corners, and a few others, which determine
-// the levels. Corners of outlines without weight are left out, and pixels that do not count.
+// Chooses about `max_pixels` of the pixels that the model covers with these parameters. If there
+// are more, it takes every k-th pixel near an edge, because these determine the corners, and a few
+// others, which determine the grey levels. It leaves out pixels that the patch excludes and, if
+// they have no weight, those at the corners of outlines.
 ChosenPixels ChoosePixels(const PatternProblem& problem,
                           const PatternParameters::Vector& parameters, int max_pixels);
 

@@ -212,10 +212,10 @@ std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSqua
                   cv::Point(static_cast<int>(high.x()) + 1, static_cast<int>(high.y()) + 1));
 }
 
-// The surroundings are read with the levels, the blur and the widths of the quiet zone that are
-// known by then. If these were wrong, as under a wide blur or where a background brighter than the
-// paper was taken for the quiet zone, the fit moves the contrast of the surroundings away from what
-// was read, and its prior moves the edges.
+// Whether the surroundings were read wrongly. They are read with the levels, the blur and the
+// widths of the quiet zone that are known by then. If these were wrong, as under a wide blur or if
+// a background brighter than the paper was taken for the quiet zone, the fit moves the contrast of
+// the surroundings away from the value read, and the prior of this contrast displaces the edges.
 bool ReadSurroundingsWrongly(const PatternMinimum& minimum) {
   constexpr double kMaxContrastError = 0.03;  // relative
   return std::abs(minimum.parameters[P::kSurround] - 1) > kMaxContrastError;

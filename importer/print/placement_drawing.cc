@@ -219,7 +219,7 @@ void WriteRigidPart(const LayoutPart& part, PageWriter* pen) {
       "Anywhere on what is rigid and seen together with the rest: far apart, not all on one line, "
       "at different heights.",
       kWords_mm, false);
-  pen->Write("Put none on parts that move against it, such as the boom.", kWords_mm, false);
+  pen->Write("Put none on parts that move relative to it, such as the boom.", kWords_mm, false);
 }
 
 Drawing DrawPicture(const PlacementPlan& plan, const Paper& paper) {

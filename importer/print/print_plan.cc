@@ -55,8 +55,8 @@ std::string PlaceText(const Layout& layout, int marker_id) {
   return PartOfMarker(layout, marker_id);
 }
 
-// How much larger the squares have to be drawn than the layout says, so that a printer which made
-// the first ones smaller makes the new ones of the same size.
+// The factor by which squares are drawn larger than the layout says. A printer that shrank the
+// first squares then prints the new ones at the same size.
 double DrawnOverMeasured(const PrintOptions& options) {
   constexpr double kMostOfAPrinter = 0.1;
   if (!options.layout || !options.layout->drawn_length_m) return 1.0;
@@ -159,7 +159,7 @@ void MakeCustomDictionary(const PrintOptions& options, int max_id, PrintPlan* pl
   plan->look.dictionary = MakeDictionary(name, *plan->codes);
 }
 
-// Which option asks for so many markers, and for which ids: the beginning of an error.
+// The beginning of an error: which option requires the marker `max_id`.
 std::string TooManyText(const PrintOptions& options, const std::string& option, int max_id) {
   if (options.arrangement != Arrangement::kGrid || options.layout) {
     return fmt::format("{}: marker {} is wanted", option, max_id);

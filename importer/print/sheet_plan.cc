@@ -111,11 +111,11 @@ OptionGroup DescribeOptions(PrintSheetOptions* options) {
         "square's side, and at least 1.5 cells",
         FromTo(0, 500)},
        {"Sheet.markers_per_sheet", &options->markers_per_sheet, "count",
-        "markers on a sheet at most; 0: as many as there is room for", AtLeast(0)},
+        "maximum number of markers on a sheet; 0: as many as there is room for", AtLeast(0)},
        {"Sheet.svg", &options->write_svg, "0|1", "also write every marker as an SVG file"},
        {"Sheet.png", &options->write_png, "0|1", "also write every marker as a PNG file"},
        {"Sheet.png_resolution", &options->png_dpi, "dpi",
-        "least resolution of the PNG files; a cell is a whole number of pixels",
+        "minimum resolution of the PNG files; a cell is a whole number of pixels",
         FromTo(10, 10000)}}};
 }
 

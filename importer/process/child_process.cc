@@ -69,8 +69,8 @@ void Send(const Start& start, const Report& report) {
   _exit(EXIT_FAILURE);
 }
 
-// The leader of the group: starts the program and waits until it or the parent has ended. A signal
-// at the parent's death that went to the program itself would spare what a script has started.
+// The leader of the group: starts the program and waits until it or the parent has ended. A death
+// signal to the program alone would not end the processes that a script has started.
 [[noreturn]] void Watch(const Start& start) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   signal(SIGCHLD, SIG_DFL);  // a caller may have it ignored, and then there is no signal

@@ -117,9 +117,10 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, 
   return fit;
 }
 
-// A fit that moves a corner further has failed. Where cells are small, blur and a narrow quiet zone
-// before a dark ground draw the outline that the search found inwards by up to two pixels a side.
-// The fit of the whole marker finds its way from there, because it knows all cells; sides do not.
+// The largest allowed movement of a corner; a fit that moves it farther has failed. Where cells are
+// small, blur and a narrow quiet zone on dark ground pull the outline of the search inwards by up
+// to two pixels per side. The fit of the whole marker recovers from this, because it knows all
+// cells; the fits of single sides do not.
 double MaxAllowedShiftPx(double cell_px, double of_small_cells_px) {
   return std::max(of_small_cells_px, 0.8 * cell_px);
 }

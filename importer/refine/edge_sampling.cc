@@ -148,7 +148,7 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   const int major_size = major == 0 ? gray.cols : gray.rows;
   const int minor_size = major == 0 ? gray.rows : gray.cols;
   int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
-  // So that the choice of lines does not depend on the band.
+  // Begins at a multiple of the stride, so that the choice of lines does not depend on the band.
   first += (stride - first % stride) % stride;
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));

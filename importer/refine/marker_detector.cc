@@ -53,7 +53,7 @@ std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const 
   }
   const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
   const bool is_fitted = refined.has_value();
-  // What only an enlarged picture shows has to look like the whole marker.
+  // A marker that only an enlarged picture shows must fit as a whole.
   if (fits_edges && !is_fitted && quad.is_second_look) return std::nullopt;
   if (!is_fitted) {
     refined = RefinedCorners{RefineSubpix(dark_on_light, quad.corners_px, cells.rows)};
@@ -81,7 +81,7 @@ bool AreAtSamePlace(const MarkerDetection& a, const MarkerDetection& b) {
 }
 
 // The search may read several outlines of one marker, and some of them wrongly. The reading whose
-// pattern fits best is kept. Without patterns, nothing tells which of two ids is right.
+// pattern fits best is kept. Without patterns, there is no telling which of two ids is right.
 void AddReading(const FittedDetection& reading, std::vector<FittedDetection>* detections) {
   const auto other =
       std::find_if(detections->begin(), detections->end(), [&](const FittedDetection& detection) {

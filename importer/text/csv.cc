@@ -15,7 +15,7 @@ class RecordParser {
  public:
   RecordParser(const std::string& name, int line) : name_(name) { record_.line = line; }
 
-  // Returns whether the record ends with this line, which it does not inside quotes.
+  // Returns whether the record ends with this line. It does not if quotes are still open.
   bool ParseLine(const std::string& text) {
     if (text.find('\0') != std::string::npos) {
       throw InputError(name_ + ":" + std::to_string(record_.line) +
@@ -121,7 +121,7 @@ void CsvWriter::Append(std::string_view field) {
 }
 
 void CsvWriter::EndRecord() {
-  // An empty line would be no record.
+  // An empty line would not be read as a record.
   out_ << (record_.empty() && num_fields_ == 1 ? "\"\"" : record_) << '\n';
   num_fields_ = 0;
   record_.clear();

@@ -8,7 +8,7 @@
 
 namespace velamap {
 
-// The value with `digits` decimals. Little below zero is 0.0, not -0.0.
+// The value with `digits` decimals. A negative value that rounds to zero becomes 0.0, not -0.0.
 std::string FixedText(double value, int digits);
 
 // "31.2 +- 1.1", or only the value if it has no sigma: both times `factor`, with `sign` between

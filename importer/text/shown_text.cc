@@ -18,7 +18,7 @@ std::set<std::string, std::greater<>> mentioned_folders;
 
 constexpr char kEndsOfWords[] = " \t\r\n'\"`,;=()[]{}<>|";
 
-// Whether a word that begins at `i` begins there, and a path may.
+// Whether `i` is the beginning of a word, where a path may begin.
 bool BeginsWord(const std::string& text, std::size_t i) {
   return i == 0 || text[i - 1] == ':' ||
          std::string(kEndsOfWords).find(text[i - 1]) != std::string::npos;

@@ -15,8 +15,8 @@ void ShowFolders(bool show);
 // folders above it even where their names hold spaces.
 void RegisterPrivatePath(const std::filesystem::path& path);
 
-// The text with every absolute path reduced to its file name. Paths are words that begin with a
-// slash, and those whose folders are the folders of a mentioned path.
+// Returns the text with every absolute path reduced to its file name. Every word that begins with a
+// slash counts as a path. Folders of registered paths are recognised even with spaces in them.
 std::string StripFolders(const std::string& text);
 
 }  // namespace velamap

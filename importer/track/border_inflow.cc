@@ -22,7 +22,8 @@ BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& 
   inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
   inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
   inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
-  // Limited below: when the picture returns from a long motion outwards, what comes in may be new.
+  // Outward motion is limited, because new markers may come in as soon as the picture returns from
+  // a long one.
   for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
   return inflow_px;
 }

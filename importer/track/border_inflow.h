@@ -1,4 +1,5 @@
-// The borders at which the picture moves inwards, along which new markers can have come in.
+// Measures how far the picture has moved inwards at each of its borders, where new markers may have
+// entered.
 
 #pragma once
 
@@ -15,12 +16,12 @@ namespace velamap {
 // outwards.
 using BorderInflow = std::array<double, 4>;
 
-// `inflow_px` plus the inflow from the motions of a frame.
+// Returns `inflow_px` plus the inflow that the motions of a frame show.
 BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& size,
                        BorderInflow inflow_px);
 
-// The bands along the borders at which new markers of up to `marker_px` can have come in. Resets
-// the inflow of these borders.
+// Returns the bands along the borders in which new markers of up to `marker_px` may have appeared,
+// and resets the inflow of these borders to zero.
 std::vector<cv::Rect> BorderRegions(double marker_px, const cv::Size& size,
                                     BorderInflow* inflow_px);
 

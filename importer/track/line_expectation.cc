@@ -14,7 +14,7 @@ constexpr double kMinCosine = 0.87;
 // beyond the end of a line cannot be predicted.
 constexpr double kMinSize = 0.6;
 
-// Spacing and perspective vary.
+// Allow for variations of spacing and perspective.
 constexpr double kReachPerDistance = 0.12, kReachPerSide = 0.3;
 
 bool HaveSameOrientation(const QuadCorners& a, const QuadCorners& b) {

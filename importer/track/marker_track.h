@@ -38,7 +38,8 @@ TrackPrediction PredictByVelocity(const MarkerTrack& track,
 // Predicts by the motion of the markers around it since the last frame.
 TrackPrediction PredictByOthers(const MarkerTrack& track, const std::vector<PointMotion>& motions);
 
-// For each track the index of the quad that continues it, or -1: of the same id, the nearest first.
+// Returns, for each track, the index of the quad with the same id that continues it, or -1. The
+// nearest pairs are matched first.
 std::vector<int> Associate(const std::vector<MarkerTrack>& tracks,
                            const std::vector<MarkerQuad>& quads, const cv::Size& image_size);
 

@@ -21,8 +21,8 @@ struct Signature {
   AVCodecID codec;
 };
 
-// How files begin. Each decoder takes a whole file as one packet, and refuses a RIFF file that is
-// no WebP.
+// The first bytes of each file format. Each decoder takes a whole file as one packet, and refuses a
+// RIFF file that is not WebP.
 constexpr Signature kSignatures[] = {
     {"\x89PNG", AV_CODEC_ID_PNG},
     {"\xFF\xD8", AV_CODEC_ID_MJPEG},

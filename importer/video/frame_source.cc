@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// OpenCV would print its own lines about a broken file.
+// Keeps OpenCV from printing its own messages about a broken file.
 void SilenceOpenCv() {
   static std::once_flag once;
   std::call_once(once,
@@ -194,8 +194,8 @@ class VideoFile : public FrameSource {
                         path_, kRemedy));
   }
 
-  // Of an interlaced video with motion, most pictures are combed. Blinds and other textures of two
-  // lines look combed only while their distance is right to a few percent.
+  // Most pictures of an interlaced video with motion are combed. Blinds and similar textures look
+  // combed only at a distance at which their period is two lines, to a few percent.
   int MinCombed() const { return std::max(3, num_frames_ / 10); }
 
   // In 64 bits, because options may be as large as an int.

@@ -26,7 +26,7 @@ struct Frame {
   cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
   double reading_s = 0.0;               // video only: wall time of Next()
-  // False for a frame of a video that is damaged in the file, or builds on one that is.
+  // False if this frame of a video is damaged or predicted from a damaged one.
   bool is_whole = true;
   std::optional<SourceFile> source;  // photographs only, once loaded
 };
@@ -57,8 +57,8 @@ class FrameSource {
 // Throws InputError unless `path` is a folder or a file that may be a video.
 void CheckImagePath(const std::string& path);
 
-// Width over height of a pixel, as the video says; 1 if it does not, and for a folder of images.
-// Throws InputError if FFmpeg cannot read the video.
+// Returns the aspect ratio of a pixel (width / height) that the video states; 1 if it states none,
+// and for a folder of images. Throws InputError if FFmpeg cannot read the video.
 double PixelAspect(const std::string& path);
 
 std::string NameOfVideoFrame(int frame_number);

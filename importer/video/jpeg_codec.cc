@@ -30,9 +30,9 @@ std::string Encode(const Compress& compress) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// What libjpeg-turbo says about data that remain before the end-of-image marker. It gives the first
-// warning only, so nothing else was wrong until there. Wrong bits cause it, and so do cameras that
-// write something behind the data.
+// libjpeg-turbo's warning about data that remain before the end-of-image marker. It reports only
+// its first warning, so everything before these data was right. Wrong bits cause this warning, and
+// so do cameras that write something after the image data.
 struct Remainder {
   bool exists = false;
   bool is_padding = false;  // a byte, or zeros and FF: no compressed data end like that

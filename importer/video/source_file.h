@@ -25,8 +25,8 @@ struct SourceFile {
 // Whether the name has an extension of an image that velamap reads (.jpg, .png, .tif ...).
 bool HasImageExtension(const std::string& path);
 
-// What to give in place of a folder without pictures that velamap reads, from the names of the
-// files in it: the end of an error, with a semicolon before each remedy.
+// Returns the end of the error message for a folder without pictures that velamap reads: the
+// remedies that the names of its files suggest, each after a semicolon.
 std::string RemedyForNoImages(const std::filesystem::path& folder,
                               const std::vector<std::string>& names);
 
@@ -37,7 +37,7 @@ SourceFile IdentifySource(const std::string& path);
 // differ. It is not read if nothing has touched it since. Throws InputError if it cannot be read.
 bool HasSameContent(const SourceFile& known, const std::string& path);
 
-// Whether `path` is where it was read from, even if the file has changed.
+// Whether `known` was read from `path`, even if the file has changed since.
 bool IsSamePlace(const SourceFile& known, const std::filesystem::path& path);
 
 // "clip.mp4, 1234 bytes of 2024-05-01 14:02 UTC".

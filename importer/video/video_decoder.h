@@ -36,9 +36,9 @@ class VideoDecoder {
   // The number that the container states, which may be off by a frame or so; 0 if it states none.
   int NumContainerFrames() const;
 
-  // By how many quarters frames are turned clockwise for display, as the metadata of the video say.
-  // cv::VideoCapture also turns them, and so do calibrations that are made from a video; version
-  // 4.6 turns them in the wrong direction (github.com/opencv/opencv/issues/22088).
+  // Number of clockwise 90-degree rotations for display, as the metadata of the video say.
+  // cv::VideoCapture also rotates frames, so calibrations made from a video are for rotated frames;
+  // version 4.6 rotates in the wrong direction (github.com/opencv/opencv/issues/22088).
   int NumQuarterTurns() const;
 
   // Whether the container says that the video is interlaced. Its frames may also say so.

@@ -1,4 +1,4 @@
-// The choice of frames of a video.
+// Selects the frames of a video.
 
 #pragma once
 

@@ -100,7 +100,7 @@ AVStream* ChooseVideoStream(const std::string& path, AVFormatContext* format) {
   return chosen;
 }
 
-// FFmpeg writes 0/1 or 0/0 for what it does not know.
+// FFmpeg writes 0/1 or 0/0 for an unknown value.
 double ValueOr(const AVRational& ratio, double unknown) {
   return ratio.num > 0 && ratio.den > 0 ? av_q2d(ratio) : unknown;
 }
@@ -160,7 +160,7 @@ double VideoStream::PixelAspect() const {
   return ValueOr(av_guess_sample_aspect_ratio(format_.get(), stream_, nullptr), 1.0);
 }
 
-// Angles between quarters are left alone, as in cv::VideoCapture.
+// Ignores angles that are not multiples of 90 degrees, as cv::VideoCapture does.
 int VideoStream::NumQuarterTurns() const {
   const std::uint8_t* matrix = av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
   if (matrix == nullptr) return 0;

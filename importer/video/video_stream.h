@@ -29,8 +29,8 @@ struct FfmpegFreer {
 
 // A callback for av_log_set_callback() that prints nothing. It marks the packet that a decoder
 // reports as damaged, if the decoder's `opaque` is a PacketDamage and its `reordered_opaque` the
-// number of the packet. Frames that are damaged are known in no other way: FFmpeg's decoders
-// conceal damage, and with several threads they lose the flags that report it.
+// number of the packet. There is no other way to learn of damaged frames: FFmpeg's decoders conceal
+// damage, and with several threads they lose the flags that report it.
 void NoteLoggedDamage(void* context, int level, const char* format, va_list arguments);
 
 // Throws std::bad_alloc where FFmpeg runs out of memory, which must not pass for the end of the
@@ -46,7 +46,8 @@ class VideoStream {
   const AVStream& stream() const { return *stream_; }
   const AVFrame& frame() const { return *frame_; }
 
-  // FFmpeg's guess, which for a variable rate is one whose multiples all gaps are. 0 if unknown.
+  // FFmpeg's guess of the frame rate; 0 if unknown. If the rate varies, all gaps between frames are
+  // multiples of the inverse of the guess.
   double FramesPerSecond() const;
   double MeanFramesPerSecond() const;  // as the container states it; 0 if it does not
   double DurationSeconds() const;      // 0 if unknown

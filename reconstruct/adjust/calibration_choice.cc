@@ -81,7 +81,8 @@ FreeIntrinsics SignificantIntrinsics(const MarkerSolution& solution, double sigm
     free = verdict.determined;
     if (!free.Any()) return {};
     verdict = JudgeIntrinsics(solution, free, sigma);
-    // Wrong values of other parameters would compensate for needed ones that are not determined.
+    // If a parameter is needed but not determined, wrong values of other parameters would
+    // compensate for it.
     const double needed_by_others = first.needed * (1.0 - verdict.criterion / first.criterion);
     if (first.improvement - verdict.improvement > needed_by_others) return {};
   }

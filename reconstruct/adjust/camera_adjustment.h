@@ -44,9 +44,10 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
                                            const Layout& layout, const CornerErrors& corner_errors,
                                            Model model, std::optional<CameraModel> wanted);
 
-// Returns `step`, the step of the focal length that a verdict on steadiness (camera_steadiness.h)
-// names, if it is real: a suspicious one if it can be measured on `seed`, the model before its
-// adjustment, and a certain one in any case. The values are those measured, where they are.
+// Returns `step`, the step of the focal length in a verdict on steadiness (camera_steadiness.h), if
+// it is real. A certain step always is; a suspicious one is if MeasureFocalStep() finds it in
+// `seed`, the model before its adjustment (may be null). Measured values replace those of the
+// verdict.
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);

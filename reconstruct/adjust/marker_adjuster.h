@@ -54,18 +54,19 @@ class MarkerAdjuster {
   // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
-  // After AdjustToCorners(); `begin` is this adjuster as it was before that. Adjusts `begin` with
-  // the intrinsics free that the images determine better than the calibration does. Returns nothing
-  // unless these explain the corners significantly better.
+  // To be called after AdjustToCorners(), with `begin` as this adjuster was before it. Adjusts
+  // `begin` once more, with those intrinsics free that the images determine better than the
+  // calibration does. Returns nothing unless the new intrinsics explain the corners significantly
+  // better.
   std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
 
   // Adds the scale bars that agree with each other. If they contradict the markers, widens the
   // prior of the print's scale accordingly. Returns false if there are no such bars.
   bool AddScaleBars();
 
-  // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
-  // and the warnings and figures of the summary. Moves the image points to where they are while the
-  // middle row is read (MoveToMiddleRow()).
+  // Minimizes until steps are a small fraction of a sigma, then computes the correlation of errors,
+  // the covariance, and the warnings and figures of the summary. Corrects the image points for the
+  // rolling shutter (MoveToMiddleRow()).
   void Finish();
   // After Finish: uses the jackknife's sigmas for the cameras where they are larger.
   void WidenCameraSigmas();

@@ -143,7 +143,8 @@ std::string NameOf(const KnownDistance& distance) {
                      PointText(distance.marker_id2, distance.corner2));
 }
 
-// The bar against the length that others give it, with their difference in m and in sigmas.
+// Compares the bar with the length that the others give it. States the difference in mm and in
+// sigmas.
 std::string ComparedWith(const char* others, const ScaleBar& bar, const Difference& difference) {
   const double length_m = bar.distance.length_m;
   const double expected_m = length_m * std::exp(-difference.value);
@@ -152,7 +153,7 @@ std::string ComparedWith(const char* others, const ScaleBar& bar, const Differen
                      1e3 * (length_m - expected_m), std::abs(difference.value) / difference.sigma);
 }
 
-// Why the markers are not overruled by a set of bars; empty where they are.
+// The reason why a set of bars does not overrule the markers; empty if it does.
 std::string ReasonAgainst(const Consensus& consensus, Eigen::Index num_bars) {
   if (num_bars > 1 && !consensus.is_alone) {
     return "measured distances contradict each other, and none of them fits the markers";

@@ -94,7 +94,7 @@ std::optional<ImageIntrinsics> IntrinsicsOf(const Model& model, const ModelImage
                          sigmas.tail<2>()};
 }
 
-// The usual residual of the model, px.
+// A typical residual of the model, px.
 double TypicalError(const Model& model) {
   std::vector<double> errors;
   for (const auto& [point3D_id, point] : model.points3D) errors.push_back(point.mean_error_px);
@@ -108,7 +108,7 @@ struct Level {
 };
 
 Level LevelOf(const std::vector<ImageIntrinsics>& values, std::size_t begin, std::size_t end) {
-  // Errors of the points, which single images do not see.
+  // Covers the errors of the points, which the sigmas of single images do not include.
   constexpr double kLeastSigma = 2e-3;
   const auto variance = [&](std::size_t i) {
     return std::pow(values[i].log_focal_sigma, 2) + kLeastSigma * kLeastSigma;
@@ -127,8 +127,8 @@ Level LevelOf(const std::vector<ImageIntrinsics>& values, std::size_t begin, std
   return level;
 }
 
-// The step that divides the images best into those before and those from some image on. The scatter
-// on both sides counts where it is larger than the sigmas.
+// The step that best divides the images into those before one image and those from it on. If the
+// scatter on both sides is larger than the sigmas, it counts instead of them.
 std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageIntrinsics>& values) {
   constexpr std::size_t kMinImages = 2;
   std::optional<FocalStep> largest;

@@ -40,8 +40,8 @@ struct FocalStep {
   // with two cameras has to confirm it.
   bool IsCertain() const;
   bool IsSuspicious() const;
-  // 3 % or more: if the step is real, the shape errs by more than its sigmas, which take one camera
-  // for granted.
+  // 3 % or more. If the step is real, the errors of the shape exceed its sigmas, because these
+  // assume one camera.
   bool SpoilsShape() const;
 };
 
@@ -50,8 +50,8 @@ struct PrincipalPointWander {
   double spread_px = 0.0;  // robust sigma along the axis that wanders more
   double focal_px = 0.0;
 
-  // 1 % of the focal length or more: the shape errs by more than its sigmas, which take one camera
-  // for granted.
+  // 1 % of the focal length or more. The errors of the shape then exceed its sigmas, because these
+  // assume one camera.
   bool SpoilsShape() const;
 };
 
@@ -67,7 +67,7 @@ SteadinessVerdict JudgeSteadiness(const Model& model);
 // The verdict without a step that is not certain.
 SteadinessVerdict WithoutDoubtfulStep(SteadinessVerdict verdict);
 
-// What was found as a warning with a remedy.
+// Describes the finding as a warning with a remedy.
 std::string DescribeStep(const FocalStep& step);
 std::string DescribeWander(const PrincipalPointWander& wander);
 

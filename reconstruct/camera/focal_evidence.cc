@@ -114,7 +114,7 @@ class PooledViews {
     return errors;
   }
 
-  // A view that the camera cannot have seen counts as one far off.
+  // A view that the camera cannot have seen counts like one with a very large error.
   double Cost(const Camera& camera, double variance) const {
     constexpr double kFarOff = 1e4;
     const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
@@ -125,7 +125,7 @@ class PooledViews {
     return cost;
   }
 
-  // The variance of the errors as a multiple of what the views' sigmas say, by the median.
+  // The variance of the errors relative to the views' sigmas, from the median.
   double Variance(const Camera& camera) const {
     std::vector<double> squares;
     for (const auto& errors : Evaluate(camera, false)) {
@@ -163,8 +163,8 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   };
   const double low = std::log(kMinFocalOnGrid * side_px),
                high = std::log(kMaxFocalOnGrid * side_px);
-  // Costs can only be compared for one and the same noise. A first pass over the grid finds the
-  // smallest one, a second pass the costs.
+  // Costs are comparable only for the same noise. A first pass over the grid finds the smallest
+  // noise, a second pass the costs.
   double variance = std::numeric_limits<double>::infinity();
   for (double x = low; x <= high; x += kGridStep) {
     variance = std::min(variance, pooled.Variance(lens(x)));

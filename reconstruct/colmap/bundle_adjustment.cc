@@ -48,9 +48,9 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
       "COLMAP's bundle_adjuster gave an implausible result: {}; log: {}", what, log_path));
 }
 
-// Checks that images, points, tracks and cameras came back: COLMAP's exit status is 0 even where it
-// failed. `before` is its input. Throws InputError where the distortion cannot be refined as the
-// options ask.
+// Checks that COLMAP's result has all images, points, tracks and cameras of its input `before`,
+// because its exit status may be 0 although it failed. Throws InputError where the distortion
+// cannot be refined as the options ask.
 void CheckStructure(const BundleAdjustmentOptions& options, const Model& before, const Model& after,
                     const std::string& log_path) {
   const auto fail = [&log_path](const std::string& what) { ThrowImplausible(what, log_path); };
@@ -108,7 +108,7 @@ void CopyGeometry(const Model& result, Model* model) {
   for (auto& [point3D_id, point] : model->points3D) {
     point.x_in_world = result.points3D.at(point3D_id).x_in_world;
   }
-  // Changes nothing where COLMAP has held the first image's pose; other versions may not.
+  // Changes nothing if COLMAP has held the pose of the first image, which not all versions may do.
   MoveToFirstCamera(model);
 }
 

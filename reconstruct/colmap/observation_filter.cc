@@ -43,9 +43,9 @@ void Remove(const ObservationError& error, Model* model, std::vector<RemovedObse
 }
 
 // Outliers among the observations of one point. A gross outlier shifts the point and increases the
-// errors of good observations, so only observations with errors of similar size are removed with
-// it, and it is removed alone where these are the majority; the next round decides on the others.
-// Observations of points behind the camera are all removed, because COLMAP would drop them.
+// errors of good observations. Therefore only observations with errors of similar size are removed
+// with it. If these are the majority, it is removed alone, and the next round decides on the
+// others. Observations of points behind the camera are all removed, because COLMAP would drop them.
 std::vector<ObservationError> FindOutliers(const std::vector<ObservationError>& track,
                                            double threshold_px) {
   constexpr double kFractionOfWorst = 0.3;

@@ -1,5 +1,4 @@
-// The lines of a layout, restricted to the markers that no evidence contradicts so far. Private to
-// this folder.
+// The lines of a layout, restricted to the markers that no evidence contradicts so far.
 
 #pragma once
 

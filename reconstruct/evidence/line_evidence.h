@@ -7,7 +7,7 @@
 // therefore at most twice the shorter of its two distances, which on a line of equal steps is at
 // most one step per place between the two others. The prices exceed this, so that bent cloth never
 // costs a true marker, except for markers that few of their images show. A line with uneven steps
-// gets a larger step. Private to this folder.
+// gets a larger step.
 
 #pragma once
 

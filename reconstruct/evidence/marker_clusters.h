@@ -1,4 +1,4 @@
-// Clusters of nearby markers, for the markers that are on no row. Private to this folder.
+// Clusters of nearby markers, for the markers that are on no row.
 
 #pragma once
 

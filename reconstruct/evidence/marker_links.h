@@ -1,5 +1,5 @@
 // Links between neighbouring markers on a surface, and chains of links that continue in one
-// direction: the first two steps of marker_rows.h. Private to this folder.
+// direction: the first two steps of marker_rows.h.
 
 #pragma once
 

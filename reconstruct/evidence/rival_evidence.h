@@ -1,4 +1,4 @@
-// Decides which of two markers that claim the same place is really there. Private to this folder.
+// Decides which of two markers that claim the same place is really there.
 
 #pragma once
 

@@ -69,8 +69,9 @@ MapSolution GrowFromStart(const GlobalRegistration& global, const std::vector<in
 }
 
 // Grows a map from every start and returns the one that explains most. Starts are judged in pairs:
-// two maps that explain the same without signs of a wrong shape decide, and the other starts are
-// not needed. The order in which maps are judged does not depend on the number of threads.
+// if a map of a pair explains as much as the best one so far, and that shows no sign of a wrong
+// shape, the other starts are not needed. The order in which maps are judged does not depend on the
+// number of threads.
 MapSolution GrowBestMap(const GlobalRegistration& global) {
   constexpr double kSame = 0.01;
   const MapProblem& problem = global.problem;

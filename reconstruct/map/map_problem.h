@@ -93,8 +93,9 @@ double ReprojectionError(const MapProblem& problem, const MapObservation& observ
 double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
                          const MapObservation& observation);
 
-// The error of the observation as one of the marker `as_marker_idx`, with its corners renumbered by
-// `quarters` turns, px. The frame has a pose and that marker a place.
+// The reprojection error (px) of the observation if it showed the marker `as_marker_idx`, with the
+// corners renumbered by `quarters` quarter turns. The frame must have a pose, and that marker a
+// place.
 double ErrorAs(const MapProblem& problem, const MapSolution& solution, MapObservation observation,
                int as_marker_idx, int quarters);
 

@@ -24,7 +24,7 @@ struct ModelImage {
   CameraId camera_id = 0;
   std::string name;
   Rigid3 cam_from_world;
-  // By keypoint_idx of the database. A rolling shutter that the adjustment knows is taken out.
+  // By keypoint_idx of the database. Corrected for the rolling shutter, if the adjustment knows it.
   std::vector<Point2D> points2D;
 };
 

@@ -27,8 +27,8 @@ double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Mo
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,
                     std::vector<RemovedObservation>* removed);
 
-// Mean length of a marker's sides in the images, px, by marker id. Markers of which no image sees
-// two neighbouring corners are left out.
+// Mean length of a marker's sides in the images, px, by marker id. Markers are left out if no image
+// sees two neighbouring corners of them.
 std::map<int, double> MeanSidesPx(const Model& model);
 
 // Median length of all sides in the images, px. Infinite where no image sees two neighbouring

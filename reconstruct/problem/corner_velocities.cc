@@ -25,8 +25,8 @@ const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
 using FrameWindow = std::array<const FrameDetections*, 5>;
 constexpr int kMiddle = 2;
 
-// Weights of values at `times_s`, one of which is 0, whose sum is the slope there of the polynomial
-// through them: the derivatives of Lagrange's polynomials.
+// Weights of the values at `times_s`, one of which is 0. The weighted sum is the slope at time 0 of
+// the polynomial through the values: the weights are the derivatives of Lagrange's polynomials.
 Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
   const std::size_t size = times_s.size();
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size));

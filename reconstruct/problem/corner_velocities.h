@@ -31,12 +31,13 @@ CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                                  const Eigen::Vector2d& velocity_px_s);
 
-// Moves the image points to where they are while the middle row is read.
+// Corrects the image points for the rolling shutter: moves each to its place at the time when the
+// middle row is read.
 void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
                      Model* model);
 
-// Undoes MoveToMiddleRow: moves the image points back to where they are while their own rows are
-// read.
+// Undoes MoveToMiddleRow(): moves each image point back to its place at the time when its own row
+// is read.
 void MoveFromMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
                        Model* model);
 

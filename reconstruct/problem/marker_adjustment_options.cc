@@ -38,11 +38,11 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
             "estimate the inset from the images"},
            {"MarkerAdjustment.refine_calibration", &options->refine_calibration, "0|1",
-            "refine the calibration where the images determine it better and contradict it; an "
-            "option BundleAdjustment.refine_* decides instead"},
+            "refine the calibration where the images determine it better and contradict it; "
+            "ignored with an option BundleAdjustment.refine_*"},
            {"MarkerAdjustment.find_camera", &options->find_camera, "0|1",
-            "the camera is not known: refine all its parameters with a prior that holds for any "
-            "camera; set without a calibration"},
+            "estimate an unknown camera: refine all parameters, with a prior that holds for any "
+            "camera; set if there is no calibration"},
            {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
             "1 sigma of a calibration that is refined: of the focal length, and of how far each "
             "distortion parameter moves the image's corners",

@@ -17,9 +17,9 @@ struct MarkerAdjustmentOptions {
   double loss_sigmas = 3.0;
   // Corners beyond this many (calibrated) sigmas are left out in the end.
   double outlier_sigmas = 4.0;
-  // 1 sigma of every printed side against marker_length, independent between sides, as a fraction;
-  // sqrt(2) times that for the difference of a marker's diagonals. It grows where the sizes of the
-  // markers scatter more.
+  // 1 sigma of every printed side relative to marker_length, independent between sides, as a
+  // fraction; sqrt(2) times that for the difference of a marker's diagonals. It grows where the
+  // sizes of the markers scatter more.
   double print_tolerance = 1e-3;
   // 1 sigma of an error that all sides share (printer, shrinking paper), as a fraction. The images
   // do not contain it, so nearly all of it is added to the scale's sigma. Measured distances that
@@ -39,8 +39,8 @@ struct MarkerAdjustmentOptions {
   // and slant is attributed to it as well: on a rendered sail, 0.031 +- 0.006 px are found where
   // the truth is 0.013 px, and the scale gets worse.
   bool estimate_inset = false;
-  // The calibration is the prior of what is refined. Only those extra parameters are refined that
-  // it names.
+  // Refined parameters have the calibration as their prior. Of the extra parameters, only those are
+  // refined that the calibration gives.
   bool refine_focal_length = false;
   bool refine_principal_point = false;
   bool refine_extra_params = false;

@@ -270,7 +270,7 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   options.max_num_iterations = max_num_iterations;
   options.function_tolerance = function_tolerance;
   options.keeps_last_step = true;
-  // Such a tolerance is only asked for near the minimum, where damping would only add iterations.
+  // Callers use such a tolerance only near the minimum, where damping would only add iterations.
   if (function_tolerance < 1e-6) options.initial_trust_region_radius = 1e8;
   std::vector<double*> eliminated, kept;
   for (double* block : problem->marker_blocks) {
@@ -283,8 +283,8 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
            summary.final_cost);
   if (!summary.is_usable) {
     throw DataError(
-        "the bundle adjustment finds no step: a corner lies behind the camera that sees it, or a "
-        "number is not finite; take more pictures, from more sides");
+        "the bundle adjustment cannot compute a step: a corner lies behind the camera that sees "
+        "it, or a number is not finite; take more pictures, from more sides");
   }
   return summary.num_iterations;
 }

@@ -19,20 +19,20 @@ namespace velamap {
 
 // Weights that change from one minimization to the next.
 struct MarkerWeights {
-  double corner_factor = 1.0;  // by which all corners' sigmas are multiplied
+  double corner_factor = 1.0;  // multiplies the sigmas of all corners
   double loss_sigmas = 0.0;
   double print_tolerance = 0.0;
-  // 1 sigma of the scale error, as a fraction, that an inset causes that is not estimated.
+  // 1 sigma of the relative scale error caused by an inset that is not estimated.
   double inset_as_scale = 0.0;
-  // 1 sigma of the scale of the print, as a fraction, that explains why scale bars contradict the
-  // markers; 0: they do not.
+  // 1 sigma of the scale of the print, as a fraction, that a contradiction between scale bars and
+  // markers requires; 0 without a contradiction.
   double print_scale_by_bars = 0.0;
   // The time from the first row of an image to the last is a parameter instead of an option.
   bool frees_rolling_shutter = false;
   // 1 sigma of the scale of each part's prints around the scale of all; 0: parts agree.
   double part_scale_sigma = 0.0;
-  // Without scale bars only its prior determines the scale of the print. It is then constant while
-  // the cost is minimized, because it would slow down the last digits, and a parameter for the
+  // Without scale bars, only its prior determines the scale of the print. It is then held constant
+  // during the minimization, because it would slow down the convergence, and freed for the
   // covariance.
   bool holds_print_scale = false;
   std::set<int> markers_without_size;

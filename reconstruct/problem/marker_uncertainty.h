@@ -1,4 +1,4 @@
-// From the covariance of a marker problem to the uncertainty that users see.
+// Converts the covariance of a marker problem into the uncertainty reported to users.
 
 #pragma once
 

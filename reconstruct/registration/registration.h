@@ -29,7 +29,8 @@ struct RegisteredFrame {
   // alignment with the mean shape.
   double rms_error_m = 0.0;
   std::string reason;  // why it is not registered, else empty
-  // If no position of its camera fits them: the number of the shape's markers that the frame shows.
+  // The number of the shape's markers that the frame shows, if no pose of the camera fits them;
+  // otherwise 0.
   int num_contradicting = 0;
 };
 
@@ -67,8 +68,8 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 // which a frame can be registered.
 void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
 
-// If no position of the camera fits at least a fifth of the frames, each with eight markers of the
-// shape or more: says so, with the possible causes and a remedy. Empty otherwise.
+// Returns a warning, with the possible causes and a remedy, if at least a fifth of the frames show
+// eight markers of the shape or more and yet no pose of the camera fits them. Empty otherwise.
 std::string CameraDoubt(const Registration& registration);
 
 }  // namespace velamap

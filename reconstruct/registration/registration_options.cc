@@ -22,9 +22,9 @@ void Append(const OptionGroup& group, OptionGroup* all) {
 OptionGroup DescribeOptions(GlobalRegistrationOptions* options) {
   return {"Global registration",
           {{"Registration.max_num_frames", &options->max_num_frames, "frames",
-            "most frames of a video that take part (global)", AtLeast(3)},
+            "maximum number of frames of a video that take part (global)", AtLeast(3)},
            {"Registration.num_starts", &options->num_starts, "count",
-            "most pairs of frames from which a map is grown (global)", AtLeast(1)}}};
+            "maximum number of pairs of frames from which a map is grown (global)", AtLeast(1)}}};
 }
 
 OptionGroup DescribeOptions(ThesisRegistrationOptions* options) {
@@ -70,9 +70,9 @@ OptionGroup DescribeOptions(RegistrationOptions* options) {
         false,
         {"central_frame"}},
        {"Registration.min_num_inliers", &options->min_num_inliers, "markers",
-        "fewest shared markers that have to agree", AtLeast(2)},
+        "minimum number of shared markers that have to agree", AtLeast(2)},
        {"Registration.min_num_frames", &options->min_num_frames, "frames",
-        "fewest frames that have to see a marker", AtLeast(2)}}};
+        "minimum number of frames that have to see a marker", AtLeast(2)}}};
   Append(DescribeOptions(&options->global), &group);
   Append(DescribeOptions(&options->thesis), &group);
   return group;

@@ -52,8 +52,8 @@ struct RegistrationOptions {
   RegistrationMethod method = RegistrationMethod::kGlobal;
   FrameOrder frame_order = FrameOrder::kAuto;
   std::string central_frame;  // image name or frame number; empty: the best one is chosen
-  int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
-  int min_num_frames = 2;     // fewest frames that see a marker
+  int min_num_inliers = 2;    // minimum number of shared markers that agree to register a frame
+  int min_num_frames = 2;     // minimum number of frames that see a marker
   // Whether the cameras are a calibration, which may be the wrong one, or guesses.
   bool has_calibration = true;
   int random_seed = 0;

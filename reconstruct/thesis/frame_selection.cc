@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-// Frame numbers are computed with 64 bits: options of any size then cannot overflow.
+// Frame numbers are computed with 64 bits, so that options of any size cannot overflow.
 using FrameNumber = std::int64_t;
 
 ShapePoints PointsOf(const FrameShape& frame) {
@@ -121,7 +121,7 @@ int NumSharedMarkers(const FrameShape& a, const FrameShape& b) {
 
 CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
   VELAMAP_CHECK(!frames.empty());
-  // How often each marker is seen gives every frame's shared markers in one pass.
+  // The number of frames that see each marker gives the shared markers of all frames in one pass.
   std::map<int, int> num_frames_of;
   for (const FrameShape& frame : frames) {
     for (const FrameMarker& marker : frame.markers) ++num_frames_of[marker.marker_id];

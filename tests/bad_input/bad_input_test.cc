@@ -73,7 +73,7 @@ TEST(BadSystem, RefusesThreads) {
     const ProgramRun run = RunVelamap(ArgumentsIn(dir.path(), command), limits);
     EXPECT_EQ(run.exit_code, 2) << run.err;
     EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("the system starts no more threads"));
+    EXPECT_THAT(run.err, HasSubstr("the system cannot start more threads"));
     EXPECT_THAT(run.err, HasSubstr("(ulimit -u)"));
   }
 }

@@ -226,25 +226,26 @@ std::vector<BadInput> SecondRuns() {
       lock = std::make_unique<FileLock>(dir / name, "test");
     };
   };
-  return {{"ASecondRunInTheWorkspace", kRerun, 2, "another velamap works here since",
-           hold("workspace/.velamap.lock")},
-          {"ASecondRunInANewWorkspace", kRerun + "2", 2, "another velamap works here since",
-           [hold](const fs::path& dir) {
-             fs::create_directory(dir / "workspace2");
-             hold("workspace2/.velamap.lock")(dir);
-           }},
-          {"AnImportIntoTheSameDatabase", kImport, 2, "another velamap works here since",
-           hold(".new.db.lock")},
-          {"AFileOfTheUserInPlaceOfTheLock", kImport, 2, ".new.db.lock: velamap did not write this",
-           Put(".new.db.lock")},
-          {"AFileOfTheUserInPlaceOfTheLockOfTheWorkspace", kRerun, 2,
-           ".velamap.lock: velamap did not write this", Put("workspace/.velamap.lock")},
-          {"AnImportIntoTheDatabaseOfTheWorkspace",
-           kRerun,
-           2,
-           "another velamap works here since",
-           hold("workspace/.database.db.lock"),
-           {"workspace/velamap.log"}}};
+  return {
+      {"ASecondRunInTheWorkspace", kRerun, 2, "another velamap process is using it (since",
+       hold("workspace/.velamap.lock")},
+      {"ASecondRunInANewWorkspace", kRerun + "2", 2, "another velamap process is using it (since",
+       [hold](const fs::path& dir) {
+         fs::create_directory(dir / "workspace2");
+         hold("workspace2/.velamap.lock")(dir);
+       }},
+      {"AnImportIntoTheSameDatabase", kImport, 2, "another velamap process is using it (since",
+       hold(".new.db.lock")},
+      {"AFileOfTheUserInPlaceOfTheLock", kImport, 2, ".new.db.lock: velamap did not write this",
+       Put(".new.db.lock")},
+      {"AFileOfTheUserInPlaceOfTheLockOfTheWorkspace", kRerun, 2,
+       ".velamap.lock: velamap did not write this", Put("workspace/.velamap.lock")},
+      {"AnImportIntoTheDatabaseOfTheWorkspace",
+       kRerun,
+       2,
+       "another velamap process is using it (since",
+       hold("workspace/.database.db.lock"),
+       {"workspace/velamap.log"}}};
 }
 
 }  // namespace

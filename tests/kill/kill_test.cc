@@ -248,10 +248,10 @@ TEST_F(Killed, TwoRunsAtOnce) {
       const bool is_first_good = first_code == 0;
       EXPECT_EQ(is_first_good ? second_code : first_code, 2);
       EXPECT_EQ(is_first_good ? first_code : second_code, 0);
-      EXPECT_THAT(
-          Messages(is_first_good ? "2" : "1"),
-          ContainsRegex(fmt::format("another velamap works here since [0-9]+:[0-9]+, process {};",
-                                    is_first_good ? first : second)));
+      EXPECT_THAT(Messages(is_first_good ? "2" : "1"),
+                  ContainsRegex(fmt::format(
+                      "another velamap process is using it \\(since [0-9]+:[0-9]+, process {}\\);",
+                      is_first_good ? first : second)));
     }
   }
   EXPECT_GT(num_refused, 0);

@@ -1,4 +1,4 @@
-// The content of a database as text, for comparison with another one.
+// The content of a database as text, for comparison with another database.
 
 #pragma once
 

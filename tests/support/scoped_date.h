@@ -1,4 +1,4 @@
-// Sets the date that is written into files for the lifetime of an object.
+// Sets, for its lifetime, the date that is written into files.
 
 #pragma once
 

@@ -8,7 +8,7 @@
 
 namespace velamap {
 
-// A unit of length of models that differs clearly from the metre.
+// A unit of length for models, clearly different from the metre.
 constexpr double kOtherUnit_m = 2.0;
 
 // The true poses and points, in units of `unit_m`, with the detections of the frames as tracks.

@@ -82,7 +82,7 @@ void Run(int argc, char** argv) {
   auto add = description.add_options();
   add("help", "this text");
   add("noise", value(&base.noise), "standard deviation, grey levels");
-  add("markers", value(&base.min_markers), "fewest markers of a line of the table");
+  add("markers", value(&base.min_markers), "minimum number of markers in a line of the table");
   add("max_tilt", value(&base.max_tilt_deg), "largest tilt of the first lines, degrees");
   add("seed", value(&base.seed), "of the markers' poses and the noise");
   po::variables_map values;

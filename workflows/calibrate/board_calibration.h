@@ -15,7 +15,7 @@ namespace velamap {
 
 struct BoardCalibrationOptions {
   std::string image_path;  // folder of images, or a video file
-  // Nothing in both: the dictionary of the markers is found by trying.
+  // If neither is given, the dictionary of the markers is found by trial.
   std::optional<Layout> layout;
   std::optional<Chessboard> chessboard;
   double square_m = 0.1;  // of the chessboard: the camera does not depend on it, the report does

@@ -55,7 +55,7 @@ struct ClipFacts {
   std::vector<int> ids_mirrored;
   bool has_layout = false;
 
-  // Whether the clip hardly shows what it should.
+  // Whether the clip shows no markers, or less than a quarter of the layout's.
   bool MissesMostMarkers() const {
     const std::size_t num_seen = num_frames_of_id.size();
     return num_seen == 0 || (has_layout && ids_never_seen.size() > 3 * num_seen);

@@ -1,4 +1,4 @@
-// The ids that a clip shows, beside those that the layout names. Private to this folder.
+// The ids that a clip shows, beside those that the layout names.
 
 #pragma once
 

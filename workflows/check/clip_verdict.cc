@@ -52,8 +52,8 @@ class Judge {
   void JudgeMirroring() {
     if (facts_.ids_mirrored.empty()) return;
     reasons_.Bad(fmt::format(
-        "{} markers are found only if the picture is mirrored: the picture is, as that of a "
-        "phone's front camera: switch mirroring off, or turn it back (ffmpeg -i clip.mp4 -vf hflip "
+        "{} markers are found only in the mirrored image, so the clip is mirrored, as by a "
+        "phone's front camera; switch mirroring off, or turn it back (ffmpeg -i clip.mp4 -vf hflip "
         "turned.mp4)",
         facts_.ids_mirrored.size()));
   }

@@ -1,4 +1,4 @@
-// The frame of a clip with its markers drawn on it. Private to this folder.
+// The frame of a clip with its markers drawn on it.
 
 #pragma once
 

@@ -190,7 +190,8 @@ void RemoveFoundCamera(const std::string& camera_path, const WorkspacePaths& pat
   if (is_found) RemoveFileOrEmptyFolder(file);
 }
 
-// Writes the camera for its next clip. Of several cameras, the one with most images.
+// Writes the camera that was found, so that it can be used for the next clip. If there are several,
+// writes the one with the most images.
 void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
                       const WorkspacePaths& paths) {
   std::map<CameraId, int> num_images;

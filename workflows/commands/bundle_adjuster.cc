@@ -27,7 +27,7 @@ struct BundleAdjusterCommandOptions : CommandOptions {
 CommandSyntax Declare(BundleAdjusterCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"bundle_adjuster",
-          "fits all cameras and points to the pictures at once",
+          "refines all cameras and points jointly (bundle adjustment)",
           "--input_path sparse/seed --output_path sparse/0",
           {{"Input and output",
             {ModelInputOption(paths),

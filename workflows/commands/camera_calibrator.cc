@@ -40,7 +40,7 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
                          &paths->output_path, "*.html")}},
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
-          "largest number of pictures used; the most informative ones are chosen", FromTo(5, 500)},
+          "maximum number of pictures used; the most informative ones are chosen", FromTo(5, 500)},
          Common(ChoiceOption("camera_model", &options->calibration.calibration.camera_model,
                              {{std::nullopt, "auto"},
                               {CameraModel::kSimplePinhole, "SIMPLE_PINHOLE"},

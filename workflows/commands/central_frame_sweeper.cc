@@ -21,7 +21,7 @@ struct CentralFrameSweeperCommandOptions : CommandOptions {
   CentralFrameSweepOptions sweep;
 };
 
-// The options of the registration except the central frame, of which the sweep tries many.
+// The options of the registration except the central frame, because the sweep tries many.
 OptionGroup RegistrationGroup(RegistrationOptions* options) {
   OptionGroup group = DescribeOptions(options);
   const std::string central_frame = OptionName(group, &options->central_frame);

@@ -48,7 +48,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
              "layout file with the parts, lines and lengths that the clip shows, or the "
              "given layout corrected, which takes a minute; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
-          "largest number of frames of a video to look at, at equal distances over all of it",
+          "maximum number of frames of a video to look at, at equal distances over all of it",
           FromTo(5, 1000)}}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->check.detection),
@@ -69,7 +69,7 @@ void RefuseUnusedOptions(const ClipCheckerCommandOptions& options) {
   }
 }
 
-// A picture in PNG under the name of a JPEG would replace a photograph with what its name denies.
+// Without this check, a PNG could replace a photograph and keep its name, such as a.jpg.
 void CheckPictureName(const std::string& path) {
   if (path.empty() || LowerExtension(path) == ".png") return;
   throw InputError(fmt::format(

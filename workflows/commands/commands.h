@@ -52,7 +52,7 @@ Command ShootPlanner();
 Command Version();
 
 struct CommandGroup {
-  std::string title;  // when one needs them
+  std::string title;  // the stage of the work that needs them
   std::vector<Command> commands;
 };
 

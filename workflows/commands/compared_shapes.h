@@ -1,4 +1,4 @@
-// What is compared: shapes with their uncertainty, and the checks of a design.
+// Reads the shapes to compare, with their uncertainty, and checks the design.
 
 #pragma once
 
@@ -35,9 +35,9 @@ Option MeshUnitOption(const std::string& name, MeshReadOptions* options);
 void CheckUnit(const std::string& path, const MeshReadOptions& options,
                const std::string& unit_option, const MarkerShape& shape, const MeshDistance& mesh);
 
-// How well the surface in `path` is known, m: for a surface.step or another file of a surface that
-// velamap fitted, the root mean square of the surface_residuals.csv beside it, by which even the
-// markers of its own shape lie off it. 0 for any other surface.
+// 1 sigma (m) of the surface in `path`. For a surface that velamap fitted, such as surface.step, it
+// is the root mean square of the surface_residuals.csv beside it, because even the markers of its
+// own shape lie that far from it. 0 for any other surface.
 double SurfaceSigma(const std::string& path);
 
 // Warns of triangles that face opposite sides.

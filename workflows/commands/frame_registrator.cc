@@ -23,7 +23,7 @@ struct FrameRegistratorCommandOptions : CommandOptions {
 CommandSyntax Declare(FrameRegistratorCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"frame_registrator",
-          "finds where the camera was for each image; writes the start of the adjustment",
+          "finds where the camera was for each image; writes the seed model for bundle_adjuster",
           "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
           {{"Input and output",
             {DatabaseInputOption(paths),

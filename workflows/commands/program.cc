@@ -84,7 +84,7 @@ int Main(int argc, char** argv) {
     if (system_error != nullptr &&
         system_error->code() == std::errc::resource_unavailable_try_again) {
       return fail(kBadInput,
-                  "the system starts no more threads or processes; raise the limit of processes "
+                  "the system cannot start more threads or processes; raise the limit of processes "
                   "(ulimit -u), or end other programs");
     }
     return fail(

@@ -19,7 +19,7 @@ enum class HelpLength {
   kAll,    // --help_all
 };
 
-// What the arguments ask for; nothing if they ask for no help.
+// The help that the arguments request; nothing if they request none.
 std::optional<HelpLength> RequestedHelp(const std::vector<std::string>& arguments);
 
 struct ShownOption {
@@ -28,7 +28,7 @@ struct ShownOption {
   std::string default_text;  // empty: none
   std::string description;   // with short names, and whether it is required
   bool is_path = false;
-  std::vector<std::string> choices;  // all values, where these are a few
+  std::vector<std::string> choices;  // accepted values, if these are a fixed set of names
 };
 
 struct ShownGroup {
@@ -36,7 +36,7 @@ struct ShownGroup {
   std::vector<ShownOption> options;
 };
 
-// The options of the command and --project_path, without groups of which nothing is shown.
+// The options of the command and --project_path, without groups that would be empty.
 std::vector<ShownGroup> ShownOptions(const CommandSyntax& syntax, HelpLength length);
 
 void PrintHelp(const CommandSyntax& syntax, HelpLength length, std::ostream& out);

@@ -36,8 +36,8 @@ void RefuseFixedCameraWithoutCalibration(const TypedNames& typed,
                                          const MarkerAdjustmentOptions& adjustment,
                                          const std::string& missing);
 
-// Refuses options that fix or free parameters of the camera, all of which are free if it is
-// unknown.
+// Refuses options that fix or free parameters of the camera, because an unknown camera has all
+// parameters free.
 void RefuseOptionsOfKnownCamera(const TypedNames& typed);
 
 // Refuses options of sections and of a sail's surface where the layout has no part with lines.

@@ -36,7 +36,7 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
        {"Plan.num_views", &options->num_views, "frames",
         "views that the adjustment uses, evenly along the arc", FromTo(2, 400)},
        {"Plan.speed", &options->speed_m_s, "m/s",
-        "speed of the camera against the markers; left out: 1", FromTo(0, 100)},
+        "speed of the camera relative to the markers; left out: 1", FromTo(0, 100)},
        Common({"Plan.speed_knots", &options->speed_knots, "knots", "replaces --Plan.speed",
                FromTo(0, 200)}),
        {"Plan.turn_rate", &options->turn_rate_deg_s, "deg/s",

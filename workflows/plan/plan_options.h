@@ -31,7 +31,7 @@ struct ShootPlanOptions {
   std::optional<double> height_m;
   int num_views = 40;  // that the adjustment uses
 
-  std::optional<double> speed_m_s;  // of the camera against the surface; nothing: 1
+  std::optional<double> speed_m_s;  // of the camera relative to the surface; nothing: 1
   std::optional<double> speed_knots;
   double turn_rate_deg_s = 10.0;
 

@@ -62,9 +62,9 @@ double NarrowPxForHalf(int num_cells);
 // 1 sigma of a corner's coordinate, px; `corner_sigma_px` is the sigma on a marker of 20 px.
 double CornerSigma(double corner_sigma_px, double side_px);
 
-// The longest path of a marker in the picture while the shutter is open: half a cell of its narrow
-// side. It costs hardly a marker and a quarter of the corners' precision; with 1.2 cells a fifth of
-// small markers are lost, and with one and a half most of them (the table of motions in
+// The longest motion of a marker in the picture that is tolerable while the shutter is open: half a
+// cell along its narrow side. It loses hardly any markers and a quarter of the corners' precision;
+// 1.2 cells lose a fifth of small markers, and 1.5 cells most of them (the table of motions in
 // sample_project/guide_sailor.md).
 double ToleratedMotionPx(double narrow_px, int num_cells);
 

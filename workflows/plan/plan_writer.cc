@@ -93,7 +93,7 @@ struct MarkerExpectation {
 }  // namespace
 
 std::string RecommendationText(const ShootPlan& plan) {
-  if (!plan.recommended) return "none, until the bad reasons of the verdict are seen to";
+  if (!plan.recommended) return "none until the problems rated bad above are solved";
   const PlannedPath& path = plan.recommended->path;
   const PlannedShutter& shutter = plan.recommended->shutter;
   const std::string text = fmt::format(

@@ -27,7 +27,7 @@ struct ClipMap {
 
 // Registers and adjusts the images of a database. Uses only the dictionary and marker lengths of
 // `layout`, not its parts and lines, and measures markers whose length is far from the given one.
-// Markers that move against the first body are tried as further bodies. Finds the camera if the
+// Markers that move relative to the first body are tried as further bodies. Finds the camera if the
 // database has no calibration. Throws DataError if the images give no body.
 ClipMap MapClip(const std::string& database_path, const Layout& layout, int num_threads);
 

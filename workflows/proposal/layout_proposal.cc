@@ -106,7 +106,7 @@ LayoutPart RigidPart(const std::string& name, const RowGroup& rows) {
 void NoteFace(const std::string& name, const FacePlane& plane, std::vector<std::string>* notes) {
   notes->push_back(
       fmt::format("{}: its markers lie in one plane to {:.2g} mm RMS, and others of the same body "
-                  "in planes that are tilted against it; it is a rigid part without lines",
+                  "in planes that are tilted relative to it; it is a rigid part without lines",
                   name, kMmPerM * plane.rms_m));
 }
 
@@ -119,10 +119,12 @@ void NoteRigidPart(const std::string& name, const RowGroup& rows, bool is_seen_t
   }
   notes->push_back(
       is_seen_to_move
-          ? fmt::format("{}: its markers keep their places and move against the largest part", name)
-          : fmt::format("{}: NOT SURE whether it is a rigid part of its own: it has fewer "
-                        "than two clear lines, and did not move against the others in this clip",
-                        name));
+          ? fmt::format("{}: its markers keep their places and move relative to the largest part",
+                        name)
+          : fmt::format(
+                "{}: NOT SURE whether it is a rigid part of its own: it has fewer "
+                "than two clear lines, and did not move relative to the others in this clip",
+                name));
 }
 
 // The markers of one printed length, where the layout has another one.
@@ -199,7 +201,7 @@ void CorrectLengths(const ClipMap& map, LayoutProposal* proposal) {
         fmt::format("{:.2f} +- {:.2f} mm", kMmPerM * other.length_m, kMmPerM * other.sigma_m);
     for (const int marker_id : other.marker_ids) {
       proposal->contradictions.push_back(fmt::format(
-          "marker {} is {:.1f} mm long instead of {:g} mm, as measured against the others",
+          "marker {} is {:.1f} mm long instead of {:g} mm, as measured relative to the others",
           marker_id, kMmPerM * map.sides.at(marker_id).length_m,
           kMmPerM * MarkerLength(layout, marker_id)));
       if (length_m == layout.marker_length_m) {

@@ -18,9 +18,9 @@ struct LayoutProposal {
   std::vector<std::string> contradictions;
 };
 
-// Parts, lines and lengths where `known`, of which only the dictionary and the lengths count, has
-// no parts. A flat group that is tilted against another one of its body becomes a rigid face, a
-// group of two rows and more a part with lines, any other one a rigid part.
+// Proposes parts, lines and lengths for a layout without parts. Uses only the dictionary and the
+// lengths of `known`. A flat group that is tilted relative to another one of its body becomes a
+// rigid face, a group of two or more rows a part with lines, and any other group a rigid part.
 LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known);
 
 // Notes the ids that `layout` does not name and that have no place, by reason.

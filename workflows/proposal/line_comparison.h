@@ -1,5 +1,4 @@
-// The lines of a layout beside the rows on which the markers of a clip stand. Private to this
-// folder.
+// The lines of a layout beside the rows on which the markers of a clip stand.
 
 #pragma once
 

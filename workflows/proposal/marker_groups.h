@@ -27,7 +27,7 @@ struct FacePlane {
 };
 
 // The groups, by index, that are faces of a solid such as a box or two walls: flat, and tilted by
-// at least 20 degrees against another flat group of the same body. A single flat group may be a
+// at least 20 degrees relative to another flat group of the same body. A single flat group may be a
 // sail on the floor, so it is no face.
 std::map<std::size_t, FacePlane> FindFaces(const ClipMap& map,
                                            const std::vector<MarkerGroup>& groups);

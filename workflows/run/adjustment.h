@@ -41,8 +41,8 @@ struct AdjustmentResult {
   SteadinessVerdict steadiness;                      // of CheckSteadiness()
 };
 
-// Throws ExternalToolError if COLMAP's program cannot be started. Called first, so that nobody
-// waits for the detection in vain.
+// Throws ExternalToolError if COLMAP's program cannot be started. To be called first, so that this
+// error comes before the long detection.
 void CheckColmap(const std::string& colmap_path);
 
 // Adjusts the model and logs how it went. Warns where the images were not taken by one steady

@@ -11,7 +11,8 @@
 
 namespace velamap {
 
-// What the report shows of an exported shape; refers to both. Without log, title and origin.
+// Collects what the report shows of an exported shape, except its log, title and origin. The result
+// refers to `report` and `layout`, which must outlive it.
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
                             const SteadinessVerdict& steadiness);
 

@@ -159,7 +159,8 @@ TEST_F(ReportKeyNumbers, AScaleOfUnknownSigmaIsNotGood) {
   EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("the size rests on one marker"));
   EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("measure a distance"));
   example_.scale.num_markers = 26;
-  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("nothing tells how well the size is"));
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice,
+              HasSubstr("the uncertainty of the size is unknown"));
   example_.scale.relative_sigma = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kCheck);
   EXPECT_EQ(Find(KeyNumberKind::kScale).value, "0.00 % spread");

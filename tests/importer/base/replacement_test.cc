@@ -292,8 +292,9 @@ TEST(FileLock, IsHeldByOneAtATimeAndLeavesNothing) {
   const TempDir dir;
   {
     const FileLock lock(dir / ".lock", "database.db");
-    ExpectThrows<InputError>([&] { FileLock other(dir / ".lock", "database.db"); },
-                             {"database.db: another velamap works here since ", "process "});
+    ExpectThrows<InputError>(
+        [&] { FileLock other(dir / ".lock", "database.db"); },
+        {"database.db: another velamap process is using it (since ", "process "});
   }
   { const FileLock lock(dir / ".lock", "database.db"); }
   EXPECT_TRUE(fs::is_empty(dir.path()));

@@ -16,7 +16,7 @@ Camera MakeClipCamera(bool wide_angle, int width_px);
 CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
                      double camera_height_m, double drift_deg);
 
-// A camera at rest in front of which the board of the thesis's section 4.1 is moved.
+// A camera at rest, in front of which the board of section 4.1 of the thesis moves.
 CameraPath MakeBoardMotion(const ClipOptions& options);
 
 }  // namespace velamap

@@ -33,7 +33,7 @@ struct ClipOptions {
   double marker_length_m = 0.0;  // 0: each scene's own
   int width_px = 1920;           // of a 16:9 picture; the focal length scales with it
   bool wide_angle = true;        // an action camera instead of a webcam
-  std::optional<Camera> camera;  // instead of either, 16:9; scaled to the width
+  std::optional<Camera> camera;  // instead of these two, 16:9; scaled to the width
   int num_frames = 200;
   double fps = 30.0;
   double distance_m = 6.0;  // from the camera to the middle of the scene

@@ -64,7 +64,7 @@ Eigen::Vector2d WalkOnSurface(const Surface& surface, const Eigen::Vector2d& uv,
 }
 
 double SailChord(const Mainsail& shape, double v) {
-  // Numeric derivatives at the border ask for places just outside [0, 1].
+  // Numeric derivatives at the border need places just outside [0, 1].
   const double left = std::max(0.0, 1.0 - v);
   return shape.scale * (kFoot_m * std::pow(left, 0.75) + kHead_m);
 }

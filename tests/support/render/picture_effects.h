@@ -12,9 +12,9 @@
 namespace velamap {
 
 // Lenses and motion blur the light before the sensor takes its means over pixels. A picture is
-// therefore drawn this many times as fine as the sensor along both sides until it is blurred:
-// kernels of less than a pixel that act on the sensor's pixels spread light in steps of a pixel,
-// as no lens does, and the estimate of camera and print takes that for sharpening and a tone curve.
+// therefore drawn and blurred at this many times the sensor's resolution along both sides. On the
+// sensor's pixels, a kernel of less than a pixel would spread light in steps of a pixel, as no lens
+// does, and the estimate of the image formation would take that for sharpening and a tone curve.
 constexpr int kFinePerSensorPx = 2;
 
 // The camera that takes the fine picture.

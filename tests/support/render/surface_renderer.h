@@ -17,7 +17,7 @@ namespace velamap {
 
 struct SurfaceRenderOptions {
   double blur_px = 0.7;         // sigma of the lens blur, in addition to the area of a pixel
-  double defocus_px = 0.0;      // radius of the disc that a point is seen as, out of focus
+  double defocus_px = 0.0;      // radius of the disc as which a point appears out of focus
   double halo = 0.0;            // share of the light that is scattered over a Gaussian of
   double halo_px = 3.0;         // this sigma
   double motion_blur_px = 0.0;  // motion during the exposure; its direction differs between frames

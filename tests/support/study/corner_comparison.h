@@ -1,4 +1,4 @@
-// Compares the corners that were found in a rendered clip with the true ones from its files.
+// Compares the corners found in a rendered clip with the truth from its files.
 
 #pragma once
 

@@ -41,7 +41,7 @@ Derivatives Differentiate(const Surface& sail, const Eigen::Vector2d& uv) {
   return result;
 }
 
-// Normal curvature along a direction, of which the part within the tangent plane counts.
+// Normal curvature along the part of a direction that lies in the tangent plane.
 double CurvatureAlong(const Derivatives& jet, const Eigen::Vector3d& direction) {
   Eigen::Matrix<double, 3, 2> tangents;
   tangents << jet.u, jet.v;

@@ -77,7 +77,7 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) {
          for (int id = 20; id < 81; ++id) facts->ids_never_seen.push_back(id);
        }},
-      {"25 markers are found only if the picture is mirrored", ReportStatus::kBad,
+      {"25 markers are found only in the mirrored image", ReportStatus::kBad,
        [](ClipFacts* facts) {
          for (int id = 20; id < 45; ++id) facts->ids_mirrored.push_back(id);
        }},

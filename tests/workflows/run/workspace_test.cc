@@ -127,7 +127,7 @@ TEST(WorkspaceTest, IsForOneAtATime) {
   {
     const Workspace workspace((temp_dir / "workspace").string(), "photos");
     EXPECT_THAT(ErrorOf(temp_dir / "workspace", "photos"),
-                HasSubstr("another velamap works here since"));
+                HasSubstr("another velamap process is using it (since"));
     EXPECT_TRUE(fs::exists(temp_dir / "workspace"));
   }
   EXPECT_EQ(ErrorOf(temp_dir / "workspace", "photos"), "");
