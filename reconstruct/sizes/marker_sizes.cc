@@ -53,23 +53,23 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   const Deviations deviations = verdict.part_scale_sigma > 0
                                     ? FindDeviationsInParts(sizes, verdict.part_scale_sigma)
                                     : FindDeviations(sizes);
-  verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
-  if (verdict.print_tolerance > print_tolerance) {
+  const SizeAgreement agreement = JudgeDeviations(deviations, sizes, print_tolerance);
+  verdict.print_tolerance = agreement.print_tolerance;
+  if (agreement.scatters_more) {
     verdict.warnings.push_back(fmt::format(
         "the sides of the markers scatter by {0:.2f} % beyond what the images explain, more than "
         "the print tolerance of {1:.2f} %; {0:.2f} % is used",
         100 * verdict.print_tolerance, 100 * print_tolerance));
   }
-  const std::vector<double> normalized = Normalize(deviations, sizes, verdict.print_tolerance);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (std::abs(normalized[i]) <= kMaxSizeSigmas) continue;
+    if (!agreement.is_contradicting[i]) continue;
     verdict.contradicting.insert(sizes[i].marker_id);
     verdict.warnings.push_back(fmt::format(
         "marker {} is {:.2f} % {} than the layout says, compared with the other markers{} "
         "({:.0f} sigmas): its size is not used; {}",
         sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
         deviations.values[i] > 0 ? "larger" : "smaller",
-        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(normalized[i]),
+        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(agreement.sigmas[i]),
         WhatToCheck(sizes[i], deviations.values[i])));
   }
   return verdict;

@@ -31,9 +31,9 @@ struct MarkerSizeVerdict {
 // the sigma of the marker's size that is due to the inset of its corners, which is the same in all
 // images; it is a fraction, and 0 for markers that the map lacks. `print_tolerance` is 1 sigma of a
 // printed side, as a fraction. A marker contradicts the others if it deviates by more than four
-// sigmas of image noise, inset and print tolerance together. The print tolerance is raised if there
-// are ten or more markers and they scatter more than 1.3 times as far as these sigmas explain. With
-// fewer than three markers nothing is judged.
+// sigmas of image noise, inset and print tolerance together and two thirds of the markers agree.
+// The print tolerance is raised where the markers scatter more (JudgeDeviations()). With fewer than
+// three markers nothing is judged.
 //
 // Parts disagree if the mean of one part (of three markers or more) differs from the mean of the
 // others by more than four sigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <boost/math/distributions/students_t.hpp>
 
 namespace velamap {
 namespace {
@@ -21,23 +20,31 @@ struct PartSize {
   Eigen::VectorXd by_factor;  // mean of MarkerSize::by_factor
 };
 
+std::vector<MarkerSize> OfLargeParts(const std::vector<MarkerSize>& sizes) {
+  std::vector<MarkerSize> of_large_parts;
+  for (const auto& [part, idxs] : GroupByPart(sizes)) {
+    if (idxs.size() < kMinMarkersOfPart) continue;
+    for (const std::size_t i : idxs) of_large_parts.push_back(sizes[i]);
+  }
+  return of_large_parts;
+}
+
 // The part with the most markers comes first.
 std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double print_tolerance) {
-  const Deviations deviations = FindDeviationsInParts(sizes, 0.0);
-  const double tolerance = FitTolerance(deviations, sizes, print_tolerance);
-  const std::vector<double> normalized = Normalize(deviations, sizes, tolerance);
+  const SizeAgreement agreement =
+      JudgeDeviations(FindDeviationsInParts(sizes, 0.0), sizes, print_tolerance);
   std::vector<PartSize> parts;
   for (const auto& [part, all] : GroupByPart(sizes)) {
-    if (all.size() < kMinMarkersOfPart) continue;
     MarkerIdxs idxs;
     std::copy_if(all.begin(), all.end(), std::back_inserter(idxs),
-                 [&](std::size_t i) { return std::abs(normalized[i]) <= kMaxSizeSigmas; });
-    if (idxs.empty()) continue;  // no marker is near the median of two equally large groups
+                 [&](std::size_t i) { return !agreement.is_contradicting[i]; });
+    if (idxs.empty()) continue;
     PartSize size{part, idxs.size(), 0.0, 0.0, MeanByFactor(sizes, idxs)};
     const double count = static_cast<double>(idxs.size());
     for (const std::size_t i : idxs) {
       size.ratio += sizes[i].ratio / count;
-      const double variance = sizes[i].block_variance + tolerance * tolerance / sizes[i].num_sides;
+      const double variance =
+          sizes[i].block_variance + std::pow(agreement.print_tolerance, 2) / sizes[i].num_sides;
       size.own_variance += variance / (count * count);
     }
     parts.push_back(std::move(size));
@@ -55,25 +62,51 @@ struct PartDifference {
   double Sigmas() const { return std::abs(value) / sigma; }
 };
 
+// The others count by their own precision: a part that is hardly known decides nothing.
 PartDifference CompareWithOthers(const std::vector<PartSize>& parts, std::size_t idx) {
-  const double num_others = static_cast<double>(parts.size()) - 1.0;
-  double ratio = 0.0, variance = parts[idx].own_variance;
+  double sum_of_weights = 0.0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i != idx) sum_of_weights += 1.0 / parts[i].own_variance;
+  }
+  double ratio = 0.0;
   Eigen::VectorXd by_factor = parts[idx].by_factor;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (i == idx) continue;
-    ratio += parts[i].ratio / num_others;
-    variance += parts[i].own_variance / (num_others * num_others);
-    by_factor -= parts[i].by_factor / num_others;
+    const double share = 1.0 / (parts[i].own_variance * sum_of_weights);
+    ratio += share * parts[i].ratio;
+    by_factor -= share * parts[i].by_factor;
   }
-  return {parts[idx].ratio / ratio - 1.0, std::sqrt(variance + by_factor.squaredNorm())};
+  const double own_variance = parts[idx].own_variance + 1.0 / sum_of_weights;
+  return {parts[idx].ratio / ratio - 1.0, std::sqrt(own_variance + by_factor.squaredNorm())};
 }
 
-// The scatter of few parts is uncertain itself: half the width of the interval that holds 68 % of
-// Student's t, 1.84 for two parts.
-double FactorOfFew(std::size_t num_parts) {
-  constexpr double kBelowOneSigma = 0.841344746;
-  const boost::math::students_t distribution(static_cast<double>(num_parts) - 1.0);
-  return boost::math::quantile(distribution, kBelowOneSigma);
+// 1 sigma of the scale, as a fraction, from how much farther than their uncertainty the parts are
+// from each other (DerSimonian and Laird, "Meta-analysis in clinical trials", 1986). Few parts are
+// uncertain evidence; parts that are hardly known count as less than one each.
+double ScaleSigma(const std::vector<PartSize>& parts) {
+  const auto count = static_cast<Eigen::Index>(parts.size());
+  Eigen::ArrayXd ratios(count), variances(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    ratios[i] = parts[static_cast<std::size_t>(i)].ratio;
+    variances[i] = parts[static_cast<std::size_t>(i)].own_variance;
+  }
+  const Eigen::ArrayXd shares = variances.inverse() / variances.inverse().sum();
+  Eigen::VectorXd mean_by_factor = Eigen::VectorXd::Zero(parts.front().by_factor.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    mean_by_factor += shares[i] * parts[static_cast<std::size_t>(i)].by_factor;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    variances[i] += (parts[static_cast<std::size_t>(i)].by_factor - mean_by_factor).squaredNorm();
+  }
+  const Eigen::ArrayXd weights = variances.inverse();
+  const double mean = (weights * ratios).sum() / weights.sum();
+  const double scatter = (weights * (ratios / mean - 1.0).square()).sum();
+  const double between =
+      std::max(0.0, (scatter - static_cast<double>(count - 1)) /
+                        (weights.sum() - weights.square().sum() / weights.sum()));
+  const Eigen::ArrayXd total = (variances + between).inverse();
+  const double effective_count = total.sum() * total.sum() / total.square().sum();
+  return StudentFactor(std::max(1.0, effective_count - 1.0)) * std::sqrt(between);
 }
 
 std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx,
@@ -90,18 +123,10 @@ std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx
 
 PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                         double print_scale_sigma) {
-  const std::vector<PartSize> parts = MeasureParts(sizes, print_tolerance);
+  const std::vector<PartSize> parts = MeasureParts(OfLargeParts(sizes), print_tolerance);
   if (parts.size() < 2) return {};
-  const double count = static_cast<double>(parts.size());
   std::vector<PartDifference> differences;
-  double scatter = 0.0, noise = 0.0;  // variances of the parts' scales: measured, and expected
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    differences.push_back(CompareWithOthers(parts, i));
-    // The mean of all parts includes this one, so the difference from it is smaller.
-    const double from_mean = differences[i].value * (count - 1) / count;
-    scatter += from_mean * from_mean / (count - 1);
-    noise += std::pow(differences[i].sigma, 2) * (count - 1) / (count * count);
-  }
+  for (std::size_t i = 0; i < parts.size(); ++i) differences.push_back(CompareWithOthers(parts, i));
   // Of two parts, each differs from the other by the same amount, so the one with more markers is
   // reported.
   const auto worst = std::max_element(
@@ -109,8 +134,7 @@ PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_toler
       [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });
   if (worst->Sigmas() <= kMaxSizeSigmas || std::abs(worst->value) <= print_scale_sigma) return {};
   const auto idx = static_cast<std::size_t>(worst - differences.begin());
-  return {FactorOfFew(parts.size()) * std::sqrt(std::max(scatter - noise, 0.0)),
-          DisagreementText(parts, idx, *worst)};
+  return {ScaleSigma(parts), DisagreementText(parts, idx, *worst)};
 }
 
 }  // namespace velamap

@@ -16,10 +16,10 @@ struct PartsVerdict {
   std::string disagreement;  // "sail and hull disagree by ..."; empty if the parts agree
 };
 
-// The parts disagree if one of them differs from the mean of the others by more than kMaxSizeSigmas
-// and by more than `print_scale_sigma`, 1 sigma of the scale of the print as a fraction. Parts with
-// fewer than kMinMarkersOfPart markers do not take part. `print_tolerance` is 1 sigma of a printed
-// side, as a fraction.
+// The parts disagree if one of them differs from the weighted mean of the others by more than
+// kMaxSizeSigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the print as a
+// fraction. Parts with fewer than kMinMarkersOfPart markers do not take part. `print_tolerance` is
+// 1 sigma of a printed side, as a fraction.
 PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                         double print_scale_sigma);
 

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "importer/base/statistics.h"
 #include "reconstruct/problem/prior_cost_functions.h"
 
@@ -23,6 +25,55 @@ void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const
     deviations->variances[i] = sizes[i].block_variance +
                                (sizes[i].by_factor - mean_by_factor).squaredNorm() + extra_variance;
   }
+}
+
+// The deviations in sigmas of image noise and print together.
+std::vector<double> Normalize(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
+                              double tolerance) {
+  std::vector<double> normalized;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    normalized.push_back(
+        deviations.values[i] /
+        std::sqrt(deviations.variances[i] + tolerance * tolerance / sizes[i].num_sides));
+  }
+  return normalized;
+}
+
+// The smallest tolerance, at least `least`, at which `scatter` is at most 1.
+template <typename Scatter>
+double ExplainingTolerance(double least, const Scatter& scatter) {
+  if (!(scatter(least) > 1.0)) return least;
+  double low = least, high = 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = std::sqrt(low * high);
+    (scatter(middle) > 1.0 ? low : high) = middle;
+  }
+  return high;
+}
+
+std::vector<bool> AreBeyond(const std::vector<double>& normalized) {
+  std::vector<bool> are_beyond;
+  for (const double value : normalized) are_beyond.push_back(std::abs(value) > kMaxSizeSigmas);
+  return are_beyond;
+}
+
+// The scatter of the values that are not left out, as wide as few of them may have hidden it.
+double ScatterWithout(const std::vector<bool>& is_left_out, const std::vector<double>& normalized,
+                      std::size_t num_groups) {
+  double sum = 0.0, num = 0.0;
+  for (std::size_t i = 0; i < normalized.size(); ++i) {
+    if (is_left_out[i]) continue;
+    sum += normalized[i] * normalized[i];
+    num += 1.0;
+  }
+  const double degrees_of_freedom = std::max(1.0, num - static_cast<double>(num_groups));
+  return StudentFactor(degrees_of_freedom) * std::sqrt(sum / degrees_of_freedom);
+}
+
+// Whether at least two thirds of the markers are not contradicting.
+bool MostAgree(const std::vector<bool>& is_contradicting) {
+  const auto num = std::count(is_contradicting.begin(), is_contradicting.end(), true);
+  return 3 * static_cast<std::size_t>(num) <= is_contradicting.size();
 }
 
 MarkerIdxs AllOf(const std::vector<MarkerSize>& sizes) {
@@ -76,6 +127,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
 Deviations FindDeviations(const std::vector<MarkerSize>& sizes) {
   Deviations deviations(sizes.size());
   Compare(sizes, AllOf(sizes), AllOf(sizes), 0.0, &deviations);
+  deviations.num_groups = 1;
   return deviations;
 }
 
@@ -90,6 +142,7 @@ Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double pa
   for (const auto& [part, idxs] : GroupByPart(sizes)) {
     if (idxs.size() >= kMinMarkersOfPart) {
       Compare(sizes, idxs, idxs, 0.0, &deviations);
+      ++deviations.num_groups;
     } else {
       Compare(sizes, idxs, AllOf(sizes), std::pow(part_scale_sigma, 2), &deviations);
     }
@@ -97,33 +150,36 @@ Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double pa
   return deviations;
 }
 
-std::vector<double> Normalize(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
-                              double tolerance) {
-  std::vector<double> normalized;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    normalized.push_back(
-        deviations.values[i] /
-        std::sqrt(deviations.variances[i] + tolerance * tolerance / sizes[i].num_sides));
-  }
-  return normalized;
+double StudentFactor(double degrees_of_freedom) {
+  constexpr double kBelowOneSigma = 0.841344746;
+  const boost::math::students_t distribution(degrees_of_freedom);
+  return boost::math::quantile(distribution, kBelowOneSigma);
 }
 
-double FitTolerance(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
-                    double print_tolerance) {
-  constexpr std::size_t kMinMarkers = 10;
+SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
+                              double print_tolerance) {
+  constexpr std::size_t kManyOfGroup = 10;
   constexpr double kMaxScatter = 1.3;
-  const auto scatter = [&](double tolerance) {
-    return RobustSigma(Normalize(deviations, sizes, tolerance));
-  };
-  if (sizes.size() < kMinMarkers || !(scatter(print_tolerance) > kMaxScatter)) {
-    return print_tolerance;
-  }
-  double low = print_tolerance, high = 1.0;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = std::sqrt(low * high);
-    (scatter(middle) > 1.0 ? low : high) = middle;
-  }
-  return high;
+  const auto normalize = [&](double tolerance) { return Normalize(deviations, sizes, tolerance); };
+  const auto robust_scatter = [&](double tolerance) { return RobustSigma(normalize(tolerance)); };
+  std::vector<bool> is_beyond =
+      AreBeyond(normalize(ExplainingTolerance(print_tolerance, robust_scatter)));
+  const bool most_agree = MostAgree(is_beyond);
+  if (!most_agree) is_beyond.assign(sizes.size(), false);
+  const bool are_many = sizes.size() >= kManyOfGroup * deviations.num_groups;
+  SizeAgreement agreement;
+  agreement.scatters_more = are_many ? !most_agree || robust_scatter(print_tolerance) > kMaxScatter
+                                     : !MostAgree(AreBeyond(normalize(print_tolerance)));
+  agreement.print_tolerance =
+      are_many && !agreement.scatters_more
+          ? print_tolerance
+          : ExplainingTolerance(print_tolerance, [&](double tolerance) {
+              return ScatterWithout(is_beyond, normalize(tolerance), deviations.num_groups);
+            });
+  agreement.sigmas = normalize(agreement.print_tolerance);
+  agreement.is_contradicting = AreBeyond(agreement.sigmas);
+  if (!most_agree) agreement.is_contradicting = is_beyond;
+  return agreement;
 }
 
 }  // namespace velamap

@@ -51,6 +51,7 @@ Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerI
 struct Deviations {
   explicit Deviations(std::size_t size) : values(size), variances(size) {}
   std::vector<double> values, variances;
+  std::size_t num_groups = 0;  // medians that come from the markers themselves
 };
 
 // Deviations from the median of all markers.
@@ -61,14 +62,30 @@ Deviations FindDeviations(const std::vector<MarkerSize>& sizes);
 // markers; `part_scale_sigma`, 1 sigma of the scale between parts, is then added to their sigma.
 Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double part_scale_sigma);
 
-// The deviations in sigmas of image noise and print together. `tolerance` is 1 sigma of a printed
-// side, as a fraction.
-std::vector<double> Normalize(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
-                              double tolerance);
+// What the deviations say about the print.
+struct SizeAgreement {
+  // 1 sigma of a printed side, as a fraction, that explains the scatter of the markers that agree:
+  // the given one or a larger one.
+  double print_tolerance = 0.0;
+  // By marker: the deviation in sigmas of image noise and print together, and whether it is beyond
+  // kMaxSizeSigmas although most markers agree.
+  std::vector<double> sigmas;
+  std::vector<bool> is_contradicting;
+  // Whether the markers scatter clearly more than the given tolerance explains.
+  bool scatters_more = false;
+};
 
-// The print tolerance that explains the scatter of the deviations. Returns `print_tolerance` for
-// fewer than ten markers, and if they scatter at most 1.3 times as far as it explains.
-double FitTolerance(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
-                    double print_tolerance);
+// Markers contradict the others if they deviate by more than kMaxSizeSigmas while at least two
+// thirds of the markers agree. Otherwise nothing shows which sizes are wrong, and all are used.
+// `print_tolerance` is 1 sigma of a printed side, as a fraction. With ten or more markers per group
+// it is raised if they scatter more than 1.3 times as far as it explains. Fewer markers may agree
+// by chance, so it is always raised to their scatter, which is widened by Student's t; they scatter
+// clearly more if more than a third of them would contradict the others at the given tolerance.
+SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
+                              double print_tolerance);
+
+// Half the width of the interval that holds 68 % of Student's t: 1.84 for one degree of freedom, 1
+// for many.
+double StudentFactor(double degrees_of_freedom);
 
 }  // namespace velamap
