@@ -17,7 +17,7 @@ namespace {
 
 using P = PatternParameters;
 
-constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
+constexpr double kMinBlurPx = 0.3;
 // Usual for cloth; the label of a can has ten times as much.
 constexpr double kBendOfDiagonal = 0.003;
 constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;  // cells
@@ -147,6 +147,14 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   return true;
 }
 
+// Enlarged pictures and large markers out of focus have a wide blur. Where it is wider than half a
+// cell, the cells run into each other.
+double MaxBlurPx(const PatternModel& model) {
+  constexpr double kUsual = 4.0, kOfCell = 0.5;
+  const double cell_px = model.diagonal_px / (std::sqrt(2.0) * model.num_cells);
+  return std::max(kUsual, kOfCell * cell_px);
+}
+
 // The fit to some pixels as a problem of MinimizeSquares().
 struct PixelFit {
   using Parameters = P::Vector;
@@ -168,7 +176,7 @@ struct PixelFit {
   }
   P::Vector LimitStep(const P::Vector& parameters, P::Vector step) const {
     for (const int index : {P::kBlurU, P::kBlurV}) {
-      LimitParameter(kMinBlurPx, kMaxBlurPx, parameters[index], &step[index]);
+      LimitParameter(kMinBlurPx, MaxBlurPx(problem.model), parameters[index], &step[index]);
     }
     for (int index = P::kMargin; index < P::kMargin + 4; ++index) {
       LimitParameter(kMinMargin, kMaxMargin, parameters[index], &step[index]);

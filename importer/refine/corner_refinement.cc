@@ -145,10 +145,7 @@ LightPart CutLight(const cv::Mat& gray, const QuadCorners& corners_px, double ce
   return {light, Eigen::Vector2d(part.x, part.y)};
 }
 
-}  // namespace
-
-std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
-                                                   const QuadCorners& corners_px, int num_cells) {
+std::optional<Fit> FitBySides(const cv::Mat& gray, const QuadCorners& corners_px, int num_cells) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
   const double cell_px = QuadMeanSide(corners_px) / num_cells;
   const double band_px = std::clamp(kBandInCells * cell_px, kMinBandPx, kMaxBandPx);
@@ -166,7 +163,33 @@ std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
       MaxAllowedShiftPx(cell_px, kMaxSideShiftPx)) {
     return std::nullopt;
   }
-  return fit.corners;
+  return fit;
+}
+
+// Moves the sides from where the edges appear to where they are printed. The shifts belong to fits
+// of whole markers; half of them counts as 1 sigma here.
+void UndoShiftOfEdges(const ImageFormationParameters& formation, Fit* fit) {
+  const QuadCorners apparent_px = fit->corners.corners_px;
+  const double shift_px =
+      formation.ink_spread_sides * QuadMeanSide(apparent_px) +
+      (formation.edge_shift_blurs + formation.outline_shift_blurs) * fit->blur_px;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector2d to_next =
+        (apparent_px[(i + 1) % kNumCorners] - apparent_px[i]).normalized();
+    const Eigen::Vector2d to_previous =
+        (apparent_px[(i + kNumCorners - 1) % kNumCorners] - apparent_px[i]).normalized();
+    fit->corners.corners_px[i] +=
+        shift_px / std::abs(Cross(to_next, to_previous)) * (to_next + to_previous);
+    fit->corners.sigma_px[i] = std::hypot(fit->corners.sigma_px[i], 0.5 * shift_px);
+  }
+}
+
+}  // namespace
+
+std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
+                                                   const QuadCorners& corners_px, int num_cells) {
+  const auto fit = FitBySides(gray, corners_px, num_cells);
+  return fit ? std::optional(fit->corners) : std::nullopt;
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
@@ -179,13 +202,14 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
                     MaxAllowedShiftPx(cell_px, kMaxPatternShiftPx)) {
     return fitted;
   }
-  if (formation.tone().IsLinear()) return RefineCornersBySides(gray, start_px, cells.rows);
-  const LightPart part = CutLight(gray, start_px, cell_px, formation);
+  LightPart part{gray, Eigen::Vector2d::Zero()};
+  if (!formation.tone().IsLinear()) part = CutLight(gray, start_px, cell_px, formation);
   for (Eigen::Vector2d& corner : start_px) corner -= part.origin_px;
-  auto refined = RefineCornersBySides(part.gray, start_px, cells.rows);
-  if (!refined) return std::nullopt;
-  for (Eigen::Vector2d& corner : refined->corners_px) corner += part.origin_px;
-  return refined;
+  auto fit = FitBySides(part.gray, start_px, cells.rows);
+  if (!fit) return std::nullopt;
+  UndoShiftOfEdges(formation.parameters(), &*fit);
+  for (Eigen::Vector2d& corner : fit->corners.corners_px) corner += part.origin_px;
+  return fit->corners;
 }
 
 }  // namespace velamap

@@ -28,7 +28,8 @@ std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
 
 // Fits the whole marker (`cells` and corners as for FitPattern()), or its sides where that fails.
 // `gray`: 8-bit, dark markers on light ground. The sides are fitted in linear light, because a tone
-// curve shifts edges. Returns nothing if both fail or move a corner too far.
+// curve shifts edges, and then moved back by ink spread and the other known shifts of edges.
+// Returns nothing if both fail or move a corner too far.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
                                             const ImageFormation& formation = ImageFormation());

@@ -14,13 +14,22 @@ namespace {
 // Exact corners would leave no weight to the priors.
 constexpr double kMinCornerFactor = 1e-3;
 
+// The factor of the corners' sigmas from the variance factor of the sigmas before any factor. Few
+// residuals may be small by chance, and a smaller factor would then make them smaller still, so
+// that the detector's own sigmas count as much as this number of residuals.
+double CornerFactor(double variance_factor, double redundancy) {
+  constexpr double kOfDetector = 4.0;
+  return std::max(kMinCornerFactor, std::sqrt((variance_factor * redundancy + kOfDetector) /
+                                              (redundancy + kOfDetector)));
+}
+
 }  // namespace
 
 double CalibrateRobustly(MarkerSolution* solution) {
   const double before = solution->weights.corner_factor;
-  const double variance =
+  const VarianceFactor variance =
       RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
-  const double after = std::max(kMinCornerFactor, before * std::sqrt(variance));
+  const double after = CornerFactor(variance.value * before * before, variance.redundancy);
   solution->weights.corner_factor = after;
   LogDebug("corner sigmas times {:.4f}", after);
   return std::abs(after / before - 1.0);
@@ -33,13 +42,14 @@ CornerCalibration CalibrateBySquares(MarkerSolution* solution) {
   for (int round = 1; true; ++round) {
     Minimize(1e-9, solution);
     auto linearization = Linearize(*solution);
-    const double redundancy = CornerRedundancy(linearization->jacobian, linearization->covariance);
+    const double redundancy =
+        std::max(1.0, CornerRedundancy(linearization->jacobian, linearization->covariance));
     double sum = 0.0;
     const std::vector<CornerResidual> corners = EvaluateCorners(linearization->problem);
     for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
-    const double variance = sum / std::max(1.0, redundancy);
+    const double variance = sum / redundancy;
     const double before = solution->weights.corner_factor;
-    const double factor = std::max(kMinCornerFactor, before * std::sqrt(variance));
+    const double factor = CornerFactor(variance * before * before, redundancy);
     if (round < kMaxNumRounds && std::abs(factor / before - 1.0) > kMaxChange) {
       solution->weights.corner_factor = factor;
       continue;
@@ -48,7 +58,7 @@ CornerCalibration CalibrateBySquares(MarkerSolution* solution) {
         std::count_if(corners.begin(), corners.end(), [variance](const CornerResidual& corner) {
           return corner.sigmas > kManySigmas * std::sqrt(variance);
         });
-    return {std::move(linearization), variance * before * before,
+    return {std::move(linearization), factor * factor,
             static_cast<double>(num_above) / static_cast<double>(corners.size())};
   }
 }

@@ -54,14 +54,15 @@ std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem) {
   return corners;
 }
 
-double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model) {
+VarianceFactor RobustVarianceFactor(const std::vector<CornerResidual>& corners,
+                                    const Model& model) {
   std::vector<double> squares;
   for (const CornerResidual& corner : corners) squares.push_back(corner.sigmas * corner.sigmas);
   const double num_residuals = 2.0 * static_cast<double>(squares.size());
   const double num_parameters = 6.0 * static_cast<double>(model.images.size() - 1) +
                                 3.0 * static_cast<double>(model.points3D.size());
   const double redundancy = std::max(0.2 * num_residuals, num_residuals - num_parameters);
-  return Median(std::move(squares)) / kChiSquaredMedian2 * num_residuals / redundancy;
+  return {Median(std::move(squares)) / kChiSquaredMedian2 * num_residuals / redundancy, redundancy};
 }
 
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,

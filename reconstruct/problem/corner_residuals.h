@@ -19,9 +19,14 @@ struct CornerResidual {
 
 std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
 
+struct VarianceFactor {
+  double value = 0.0;
+  double redundancy = 0.0;  // number of residuals minus number of parameters
+};
+
 // Variance factor of the corners by their median residual, which outliers do not move. Counts 6
 // parameters for each image but the first and 3 for each point.
-double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model);
+VarianceFactor RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model);
 
 // Takes the corners beyond `max_sigmas` out of the model and appends them to `removed`.
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,

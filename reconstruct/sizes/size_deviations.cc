@@ -161,7 +161,13 @@ SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<Ma
   constexpr std::size_t kManyOfGroup = 10;
   constexpr double kMaxScatter = 1.3;
   const auto normalize = [&](double tolerance) { return Normalize(deviations, sizes, tolerance); };
-  const auto robust_scatter = [&](double tolerance) { return RobustSigma(normalize(tolerance)); };
+  // Deviations from the median of few markers are too small. The factor is about that of Croux and
+  // Rousseeuw ("Time-efficient algorithms for two highly robust estimators of scale", 1992).
+  const double for_few =
+      static_cast<double>(sizes.size()) / static_cast<double>(sizes.size() - deviations.num_groups);
+  const auto robust_scatter = [&](double tolerance) {
+    return for_few * RobustSigma(normalize(tolerance));
+  };
   std::vector<bool> is_beyond =
       AreBeyond(normalize(ExplainingTolerance(print_tolerance, robust_scatter)));
   const bool most_agree = MostAgree(is_beyond);
