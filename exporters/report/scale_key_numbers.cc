@@ -17,17 +17,19 @@ namespace {
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
 constexpr double kGoodScaleSigma_percent = 0.5, kBadScaleSigma_percent = 3;
 
-// Whether parts differ by more than the scale's sigma says and no distance decides between them. A
-// scale bar that is far from its length in the shape was left out by the adjustment.
+// Whether a distance decides about the scale. A scale bar that is far from its length in the shape
+// was left out by the adjustment.
+bool DistanceDecides(const ScaleAudit& audit) {
+  return std::any_of(audit.distances.begin(), audit.distances.end(),
+                     [](const CheckedDistance& checked) {
+                       return checked.distance_m && !checked.IsCheck() &&
+                              std::abs(checked.DifferenceInSigmas()) <= kMaxCheckSigmas;
+                     });
+}
+
+// Whether parts differ by more than the scale's sigma says and no distance decides between them.
 bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
-  const auto decides = [](const CheckedDistance& checked) {
-    return checked.distance_m && !checked.IsCheck() &&
-           std::abs(checked.DifferenceInSigmas()) <= kMaxCheckSigmas;
-  };
-  if (!audit.parts_disagree ||
-      std::any_of(audit.distances.begin(), audit.distances.end(), decides)) {
-    return false;
-  }
+  if (!audit.parts_disagree || DistanceDecides(audit)) return false;
   return std::any_of(audit.parts.begin(), audit.parts.end(), [&scale](const GroupScale& part) {
     return std::abs(part.deviation) > scale.relative_sigma.value_or(0.0);
   });
@@ -37,6 +39,22 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
 std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
   if (!scale.relative_sigma || std::isnan(*scale.relative_sigma)) return std::nullopt;
   return 100 * *scale.relative_sigma;
+}
+
+// How far the markers are from their lengths in the layout where the model was adjusted with other
+// lengths; empty where it was not, or where measured distances explain it.
+std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& audit) {
+  constexpr double kMaxSigmas = 3.0;
+  const double sigma =
+      std::hypot(scale.relative_sigma.value_or(0.0), audit.deviation_sigma.value_or(0.0));
+  if (!(sigma > 0) || std::abs(audit.deviation) <= kMaxSigmas * sigma || DistanceDecides(audit)) {
+    return "";
+  }
+  return fmt::format(
+      "the markers are {:.2f} % {} than the layout says ({:.0f} sigmas), so the model was adjusted "
+      "with other marker lengths",
+      100 * std::abs(audit.deviation), audit.deviation < 0 ? "larger" : "smaller",
+      std::abs(audit.deviation) / sigma);
 }
 
 // A small spread proves nothing if the scale is hardly known: one marker never contradicts itself.
@@ -83,6 +101,13 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
     number.meaning += "; measured distances contradict it";
     number.status = ReportStatus::kBad;
     number.advice = "find out which is wrong, the measured distances or the shape, before using it";
+  } else if (const std::string contradiction = audit != nullptr && uncertainty != nullptr
+                                                   ? ContradictionOfLayout(scale, *audit)
+                                                   : "";
+             !contradiction.empty()) {
+    number.meaning += "; " + contradiction;
+    number.status = ReportStatus::kBad;
+    number.advice = contradiction + ": adjust it again with this layout (bundle_adjuster)";
   } else if (audit != nullptr && number.status == ReportStatus::kGood &&
              PartsLeaveScaleOpen(scale, *audit)) {
     number.meaning += "; parts disagree: measure a distance on one of them";

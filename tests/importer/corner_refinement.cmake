@@ -3,6 +3,8 @@ velamap_test(
   LABEL unit
   SOURCES
     refine/corner_refinement_test.cc
+    refine/side_shift_test.cc
+    pattern/wide_blur_test.cc
     refine/read_again_test.cc
     refine/fit_models_test.cc
     refine/edge_sampling_test.cc

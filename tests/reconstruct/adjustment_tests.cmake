@@ -11,7 +11,9 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     adjust/rolling_shutter_test.cc
     problem/corner_velocities_test.cc
     problem/marker_cost_functions_test.cc
+    sizes/few_markers_test.cc
     sizes/marker_sizes_test.cc
+    sizes/part_sizes_test.cc
     problem/marker_uncertainty_test.cc
     adjust/scale_bar_verdict_test.cc
     scene_model.cc
