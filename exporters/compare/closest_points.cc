@@ -24,15 +24,6 @@ constexpr double kFloor = 1e-9;       // of the diagonal: distances below this a
 constexpr double kConverged = 1e-8;   // of the diagonal, a step: 50 nm on a sail of 5 m
 constexpr double kMaxTurn_rad = 0.5;  // of one step
 
-Points Thinned(const Points& points, std::size_t max_num) {
-  if (points.size() <= max_num) return points;
-  Points thinned;
-  for (std::size_t i = 0; i < max_num; ++i) {
-    thinned.push_back(points[i * points.size() / max_num]);
-  }
-  return thinned;
-}
-
 // Root mean square of the smallest kTrim of the distances.
 double TrimmedRms(const std::vector<PointResidual>& residuals) {
   std::vector<double> distances_m;

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include "exporters/comparison_page/comparison_page.h"
+#include "exporters/comparison_page/comparison_sections_json.h"
 #include "exporters/comparison_page/comparison_words.h"
 #include "exporters/report/html_page.h"
 #include "exporters/shape/sail_lines.h"
@@ -15,12 +14,7 @@
 namespace velamap {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr int kNumProfilePoints = 61;
-
-// Six decimals: a nanometre for values in mm, a micrometre for values in m.
-Json Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
+using Json = ComparisonJsonValue;
 
 Json VectorJson(const Eigen::Vector3d& x) {
   return {Rounded(x.x()), Rounded(x.y()), Rounded(x.z())};
@@ -100,99 +94,6 @@ Json ShapeJson(const Comparison& comparison) {
     json["num_significant"] = deviation.num_significant;
   }
   return json;
-}
-
-// The difference in the same row of the table of numbers; null if there is none.
-const SectionDifference* FindDifference(const std::vector<SectionDifference>& differences,
-                                        const SectionDifference& like) {
-  const auto it =
-      std::find_if(differences.begin(), differences.end(), [&](const SectionDifference& d) {
-        return d.part == like.part && d.section == like.section && d.number == like.number;
-      });
-  return it == differences.end() ? nullptr : &*it;
-}
-
-// The rows of all shapes, each once, in the order of the first shape that has it.
-std::vector<SectionDifference> AllNumbers(const std::vector<Comparison>& series) {
-  std::vector<SectionDifference> all;
-  for (const Comparison& comparison : series) {
-    for (const SectionDifference& d : comparison.sections.differences) {
-      if (FindDifference(all, d) == nullptr) all.push_back(d);
-    }
-  }
-  return all;
-}
-
-// Each shape is compared with a reference of the same markers, so that the reference's number is
-// the same for all shapes only where they have the same markers.
-Json NumbersJson(const std::vector<Comparison>& series) {
-  Json rows = Json::array();
-  for (const SectionDifference& number : AllNumbers(series)) {
-    Json values = Json::array();
-    std::set<double> references;
-    for (const Comparison& comparison : series) {
-      const SectionDifference* d = FindDifference(comparison.sections.differences, number);
-      if (d == nullptr) {
-        values.push_back(nullptr);
-        continue;
-      }
-      Json value = {{"value", Rounded(d->value)}, {"difference", Rounded(d->Difference())}};
-      if (d->sigma) value["sigma"] = Rounded(*d->sigma);
-      value["is_significant"] = d->IsSignificant();
-      values.push_back(std::move(value));
-      references.insert(Rounded(d->reference).get<double>());
-    }
-    Json row = {{"section", SectionName(series, number.part, number.section)},
-                {"number", NumberName(number.number)},
-                {"unit", NumberUnit(number.number)},
-                {"values", std::move(values)}};
-    if (references.size() == 1) row["reference"] = *references.begin();
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-// The profile with its chord on that of the reference it is compared with, and as it lies beside
-// `reference`, which is drawn, mm. The two references differ where the shape lacks markers at an
-// end of the line. Against a design, the sections of each shape are in a frame of their own.
-Json CurveJson(const std::string& name, const Section& section, const Section& own_reference,
-               const Section& reference, const Rigid3& reference_frame_from_frame) {
-  Json own = Json::array(), placed = Json::array();
-  for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
-    const auto add = [](const ProfilePoint& p, Json* points) {
-      points->push_back({std::round(1e5 * p.chordwise_m) / 100, std::round(1e5 * p.depth_m) / 100});
-    };
-    const Eigen::Vector3d x_on_chord_m = EvaluateCurve(own_reference.curve, 0.0) +
-                                         point.chordwise_m * own_reference.chord_direction +
-                                         point.depth_m * own_reference.depth_direction;
-    add(ProfilePointOf(reference, reference_frame_from_frame * x_on_chord_m), &own);
-    add(ProfilePointOf(reference, reference_frame_from_frame * point.x_in_frame_m), &placed);
-  }
-  return {{"name", name}, {"own", std::move(own)}, {"placed", std::move(placed)}};
-}
-
-Json ProfilesJson(const ComparisonPageInput& input) {
-  Json profiles = Json::array();
-  const SectionComparison& first = input.series.front().sections;
-  for (const Section& reference : first.of_reference.sections) {
-    Json curves =
-        Json::array({CurveJson(input.reference_name, reference, reference, reference, Rigid3())});
-    for (const Comparison& comparison : input.series) {
-      const auto find_section = [&](const auto& sections) {
-        return FindSection(sections, reference.part, reference.name);
-      };
-      const Section* section = find_section(comparison.sections.of_shape);
-      const Section* own_reference = find_section(comparison.sections.of_reference);
-      if (section == nullptr || own_reference == nullptr) continue;
-      const Rigid3 first_from_frame =
-          first.frame_from_reference * Inverse(comparison.sections.frame_from_reference);
-      curves.push_back(
-          CurveJson(comparison.name, *section, *own_reference, reference, first_from_frame));
-    }
-    profiles.push_back({{"section", SectionName(input.series, reference.part, reference.name)},
-                        {"curves", std::move(curves)}});
-  }
-  return profiles;
 }
 
 Json DistanceJson(const MarkerDeviation& marker) {

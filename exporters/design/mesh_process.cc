@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -23,6 +22,7 @@
 
 #include "exporters/design/mesh_parser.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/numbers.h"
 #include "importer/process/child_process.h"
 
@@ -61,33 +61,21 @@ bool KeepOutputForAnswer() {
   return dup2(nowhere, STDOUT_FILENO) >= 0 && dup2(nowhere, STDERR_FILENO) >= 0;
 }
 
-bool WriteAll(const void* data, std::size_t size) {
-  const char* rest = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = write(kAnswerFd, rest, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    rest += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 template <typename Item>
 bool WriteItems(const std::vector<Item>& items) {
-  return WriteAll(items.data(), items.size() * sizeof(Item));
+  return WriteAll(kAnswerFd, items.data(), items.size() * sizeof(Item));
 }
 
 bool WriteMesh(const TriangleMesh& mesh) {
   const Answer answer = kMesh;
   const std::array<std::uint64_t, 2> counts = {mesh.vertices_m.size(), mesh.triangles.size()};
-  return WriteAll(&answer, 1) && WriteAll(counts.data(), sizeof(counts)) &&
+  return WriteAll(kAnswerFd, &answer, 1) && WriteAll(kAnswerFd, counts.data(), sizeof(counts)) &&
          WriteItems(mesh.vertices_m) && WriteItems(mesh.triangles);
 }
 
 bool WriteFailure(std::string_view message) {
   const Answer answer = kError;
-  return WriteAll(&answer, 1) && WriteAll(message.data(), message.size());
+  return WriteAll(kAnswerFd, &answer, 1) && WriteAll(kAnswerFd, message.data(), message.size());
 }
 
 // The answer when memory runs out, made in advance, because making it allocates.

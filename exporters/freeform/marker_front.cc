@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <queue>
 #include <set>
@@ -12,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/disjoint_sets.h"
 #include "importer/geometry/quad.h"
 
 namespace velamap {
@@ -252,18 +252,13 @@ int CountOpenEdges(const std::vector<std::array<int, 3>>& triangles) {
 
 std::vector<int> PieceOfVertex(const std::vector<std::array<int, 3>>& triangles,
                                std::size_t num_vertices) {
-  std::vector<int> parents(num_vertices);
-  std::iota(parents.begin(), parents.end(), 0);
-  const auto root_of = [&parents](int vertex) {
-    while (parents[vertex] != vertex) vertex = parents[vertex] = parents[parents[vertex]];
-    return vertex;
-  };
+  DisjointSets sets(num_vertices);
   for (const auto& [a, b, c] : triangles) {
-    parents[root_of(b)] = root_of(a);
-    parents[root_of(c)] = root_of(a);
+    sets.Join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    sets.Join(static_cast<std::size_t>(a), static_cast<std::size_t>(c));
   }
   std::vector<int> pieces(num_vertices);
-  for (std::size_t i = 0; i < num_vertices; ++i) pieces[i] = root_of(static_cast<int>(i));
+  for (std::size_t i = 0; i < num_vertices; ++i) pieces[i] = static_cast<int>(sets.Find(i));
   return pieces;
 }
 

@@ -14,7 +14,6 @@
 #include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
-#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {
@@ -138,26 +137,24 @@ void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sectio
   }
 }
 
-void AddPartSections(const PartContext& context, const std::optional<MarkerPair>& boom,
-                     const std::optional<MarkerPair>& centerline, const std::string& up_reference,
-                     const SectionOptions& options, SectionReport* report) {
-  const std::vector<LineCurve>& lines = context.curves.lines;
-  for (const MissingLine& line : context.curves.missing) {
-    report->missing.push_back({context.part.name, line.name, line.reason, line.is_by_layout});
-  }
-  const std::vector<std::string>& crossings = context.curves.crossings;
-  report->notes.insert(report->notes.end(), crossings.begin(), crossings.end());
-  if (lines.empty()) return;
-
+// The sections of a part: lines, from the lowest up, then heights.
+struct PartSections {
   std::vector<Section> sections;
   std::vector<NumbersWithGradient> numbers;
+};
+
+PartSections CollectSections(const PartContext& context,
+                             const std::vector<double>& wanted_heights_m, SectionReport* report) {
+  const std::vector<LineCurve>& lines = context.curves.lines;
+  PartSections part;
+  auto& [sections, numbers] = part;
   for (const LineCurve& line : lines) {
     numbers.push_back(NumbersOfLine(context, line));
     sections.push_back(DescribeSection(context, line.fit.curve, numbers.back()));
     sections.back().name = line.name;
     AddMarkers(context, line, &sections.back());
   }
-  const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
+  const std::set<double> heights_m(wanted_heights_m.begin(), wanted_heights_m.end());
   for (const double height_m : heights_m) {
     const std::string name = fmt::format("height={}", height_m);
     const HeightCut cut = CutAtHeight(SampleLines(lines), context.axes.up, height_m);
@@ -171,6 +168,21 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.back().is_line = false;
   }
   AddMissingEndsOfHeights(lines.size(), &sections);
+  return part;
+}
+
+void AddPartSections(const PartContext& context, const std::optional<MarkerPair>& boom,
+                     const std::optional<MarkerPair>& centerline, const std::string& up_reference,
+                     const SectionOptions& options, SectionReport* report) {
+  const std::vector<LineCurve>& lines = context.curves.lines;
+  for (const MissingLine& line : context.curves.missing) {
+    report->missing.push_back({context.part.name, line.name, line.reason, line.is_by_layout});
+  }
+  const std::vector<std::string>& crossings = context.curves.crossings;
+  report->notes.insert(report->notes.end(), crossings.begin(), crossings.end());
+  if (lines.empty()) return;
+
+  auto [sections, numbers] = CollectSections(context, options.heights_m, report);
   const ReferenceSection reference = ChooseReferenceSection(context, sections);
   std::optional<NumbersWithGradient> of_boom;
   if (boom) of_boom = NumbersOfPair(context, *boom);
@@ -226,38 +238,6 @@ std::string MissingEndsText(const Section& section) {
   const auto [first, end] = luff > 0 ? std::pair{luff, "luff"} : std::pair{leech, "leech"};
   return fmt::format("{} marker{} missing at the {}{}", first, first == 1 ? "" : "s", end,
                      luff > 0 && leech > 0 ? fmt::format(" and {} at the leech", leech) : "");
-}
-
-OptionGroup DescribeOptions(SectionOptions* options) {
-  const auto set_heights = [options](const std::string& text, const std::string& option) {
-    const auto heights_m = ParseNumberList<double>(text);
-    if (!heights_m) {
-      throw InputError(
-          fmt::format("{}: '{}' is not a list of heights in m such as 1,2.5,4", option, text));
-    }
-    options->heights_m = *heights_m;
-  };
-  return {"Sections",
-          {{"Section.heights", ParsedValue{&options->heights_m, "", set_heights}, "m,m,...",
-            "heights of sections besides the lines, along the luff from the frame's origin"},
-           {"Section.min_markers", &options->min_markers, "markers",
-            "minimum number of whole markers on a line for a section", AtLeast(4)}}};
-}
-
-void SectionOptions::Check() const {
-  constexpr std::size_t kMaxHeights = 500;
-  CheckRanges(*this);
-  const std::string name = OptionName(&SectionOptions::heights_m);
-  if (heights_m.size() > kMaxHeights) {
-    throw InputError(fmt::format("{}: {} heights are too many; give at most {}", name,
-                                 heights_m.size(), kMaxHeights));
-  }
-  for (const double height_m : heights_m) {
-    if (!std::isfinite(height_m)) {
-      throw InputError(
-          fmt::format("{}: {} is not a height; give numbers of metres", name, height_m));
-    }
-  }
 }
 
 SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,

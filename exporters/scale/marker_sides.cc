@@ -227,8 +227,6 @@ void MoveOut(double inset_px, ModelImage* image) {
 
 }  // namespace
 
-double MeasuredMarkerSides::Mean() const { return MeanSide(sides); }
-
 double MeasuredMarkerSides::HorizontalOverVertical() const {
   return (sides[0] + sides[2]) / (sides[1] + sides[3]);
 }
@@ -258,7 +256,7 @@ std::vector<MeasuredMarkerSides> MeasureSides(const Model& model, const Layout& 
     const auto& sides = measured.sides;
     if (!equations.IsDetermined() || *std::min_element(sides.begin(), sides.end()) == 0) continue;
     const ShapeMarker& marker = *FindWholeMarker(shape, measured.marker_id);
-    measured.mean_sigma = SigmaOf(equations, MeanSideGradient(marker)) / measured.Mean();
+    measured.mean_sigma = SigmaOf(equations, MeanSideGradient(marker)) / MeanSide(measured.sides);
     measured.ratio_sigma = SigmaOf(equations, RatioGradient(marker, measured));
   }
   return markers;

@@ -25,7 +25,6 @@ struct MeasuredMarkerSides {
   // Mean side in the images, px, weighted by the side itself.
   std::optional<double> side_px;
 
-  double Mean() const;
   double HorizontalOverVertical() const;
 };
 

@@ -35,7 +35,7 @@ std::map<int, double> RatiosOf(const std::vector<MeasuredMarkerSides>& markers,
                                const Layout& layout) {
   std::map<int, double> ratios;
   for (const MeasuredMarkerSides& marker : markers) {
-    const double ratio = MarkerLength(layout, marker.marker_id) / marker.Mean();
+    const double ratio = MarkerLength(layout, marker.marker_id) / MeanSide(marker.sides);
     if (std::isfinite(ratio)) ratios[marker.marker_id] = ratio;
   }
   return ratios;
@@ -55,9 +55,9 @@ std::vector<double> ValuesOf(const std::map<int, double>& ratio_of) {
 double PrintedOverMeanSide(const std::vector<MeasuredMarkerSides>& markers, const Layout& layout) {
   double printed = 0.0, measured = 0.0;
   for (const MeasuredMarkerSides& marker : markers) {
-    if (!(marker.Mean() > 0)) continue;  // as in RatiosOf()
+    if (!(MeanSide(marker.sides) > 0)) continue;  // as in RatiosOf()
     printed += MarkerLength(layout, marker.marker_id);
-    measured += marker.Mean();
+    measured += MeanSide(marker.sides);
   }
   return printed / measured;
 }

@@ -53,7 +53,7 @@ std::vector<MarkerScale> ScalesOf(const std::vector<MeasuredMarkerSides>& measur
     marker.marker_id = sides.marker_id;
     marker.part = sides.part;
     marker.length_m = MarkerLength(layout, sides.marker_id);
-    marker.side_m = sides.Mean();
+    marker.side_m = MeanSide(sides.sides);
     marker.deviation = marker.length_m / marker.side_m - 1.0;
     marker.sigma = sides.mean_sigma;
     marker.side_px = sides.side_px;

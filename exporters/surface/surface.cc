@@ -177,43 +177,59 @@ bool HasTilts(const SortedInput& sorted) {
                      [](const auto& entry) { return !entry.second.corners_in_shape_m.empty(); });
 }
 
-void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name,
-               const std::optional<double>& extension_mm, const std::string& extension_option) {
-  if (edge.size() == 1) {
-    throw InputError(fmt::format("the {} edge has one point; it needs two or more", name));
+// A smooth surface and the terms of its fit.
+struct SurfaceFit {
+  SmoothSurface smooth;
+  std::vector<SurfaceTerm> terms;
+};
+
+// Fits again and again, and moves the parameters of the markers to their feet in between.
+SurfaceFit IterateFits(const SortedInput& sorted, const MarkerNoise& noise, const OpenSides& open,
+                       SurfaceParameters* parameters) {
+  const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
+  SurfaceFit result;
+  auto& [smooth, terms] = result;
+  std::optional<std::map<int, double>> tilt_sigma_m;
+  std::optional<SmoothingWeights> weights;  // of the last fit with all terms
+  for (int fit = 1; fit <= kNumFits; ++fit) {
+    const bool is_parabolic = fit <= kNumParabolicFits;
+    terms = PlaceTerms(parameters->observations, noise);
+    if (tilt_sigma_m) AddTiltTerms(parameters->observations, *tilt_sigma_m, &terms);
+    smooth = SmoothTerms(*parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing,
+                         weights);
+    if (tilt_sigma_m) weights = smooth.weights;
+    if (fit == kNumFits) break;
+    if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, parameters);
+    if (!interpolates) {
+      if (!is_parabolic) tilt_sigma_m = TiltSigmas(parameters->observations, noise, smooth);
+      MoveMarkersToFeet(smooth.surface, open, parameters);
+    } else if (is_parabolic) {
+      MoveCornersAroundMarkers(smooth.surface, parameters);
+    } else {
+      MoveMarkersBetweenLinesToFeet(smooth.surface, parameters);
+    }
   }
-  if (!edge.empty() && extension_mm.value_or(0.0) > 0) {
-    throw InputError(
-        fmt::format("{}: the surface cannot go {} mm beyond the {} and end at its given edge; give "
-                    "one of the two",
-                    extension_option, *extension_mm, name));
-  }
+  return result;
+}
+
+FittedSurface MakeResult(const SortedInput& sorted, const SurfaceOptions& ends,
+                         const SurfaceParameters& parameters, const SurfaceFit& fit) {
+  const auto& [smooth, terms] = fit;
+  FittedSurface result;
+  result.surface = smooth.surface;
+  result.pole_covariance_m2 = smooth.pole_covariance_m2;
+  result.num_effective_parameters = smooth.num_effective_parameters;
+  AddDependence(parameters, terms, smooth, &result);
+  result.residuals = Residuals(sorted, parameters, terms, smooth.surface);
+  result.notes = sorted.notes;
+  result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
+  result.edges = EdgesOf(smooth);
+  NoteEdges(sorted, ends, result.edges, &result.notes);
+  SummarizeResiduals(&result);
+  return result;
 }
 
 }  // namespace
-
-OptionGroup DescribeOptions(SurfaceOptions* options) {
-  return {"Surface",
-          {{"Surface.luff_extension", &options->luff_extension_mm, "mm",
-            "how far the surface continues beyond the first markers of the lines; left out: to the "
-            "edge that the layout names, or not at all",
-            AtLeast(0)},
-           {"Surface.leech_extension", &options->leech_extension_mm, "mm",
-            "the same beyond the last markers of the lines", AtLeast(0)},
-           {"Surface.foot_extension", &options->foot_extension_mm, "mm",
-            "the same below the lowest line", AtLeast(0)},
-           {"Surface.head_extension", &options->head_extension_mm, "mm",
-            "the same above the highest line", AtLeast(0)}}};
-}
-
-void SurfaceOptions::Check() const {
-  CheckRanges(*this);
-  CheckEdge(edges.luff, "luff", luff_extension_mm, OptionName(&SurfaceOptions::luff_extension_mm));
-  CheckEdge(edges.leech, "leech", leech_extension_mm,
-            OptionName(&SurfaceOptions::leech_extension_mm));
-  CheckEdge(edges.foot, "foot", foot_extension_mm, OptionName(&SurfaceOptions::foot_extension_mm));
-  CheckEdge(edges.head, "head", head_extension_mm, OptionName(&SurfaceOptions::head_extension_mm));
-}
 
 std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
   return SigmaAt(fit.surface, fit.pole_covariance_m2, u, v);
@@ -252,45 +268,13 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   SurfaceParameters parameters = AssignParameters(sorted.lines, shows_between, ends);
   const OpenSides open = OpenSidesOf(parameters, ends.edges);
   SetCorners(sorted.by_id, &parameters);
-  SmoothSurface smooth;
-  std::vector<SurfaceTerm> terms;
-  std::optional<std::map<int, double>> tilt_sigma_m;
-  std::optional<SmoothingWeights> weights;  // of the last fit with all terms
-  for (int fit = 1; fit <= kNumFits; ++fit) {
-    const bool is_parabolic = fit <= kNumParabolicFits;
-    terms = PlaceTerms(parameters.observations, noise);
-    if (tilt_sigma_m) AddTiltTerms(parameters.observations, *tilt_sigma_m, &terms);
-    smooth = SmoothTerms(parameters, terms, is_parabolic ? Smoothing::kParabolas : noise.smoothing,
-                         weights);
-    if (tilt_sigma_m) weights = smooth.weights;
-    if (fit == kNumFits) break;
-    if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
-    if (!interpolates) {
-      if (!is_parabolic) tilt_sigma_m = TiltSigmas(parameters.observations, noise, smooth);
-      MoveMarkersToFeet(smooth.surface, open, &parameters);
-    } else if (is_parabolic) {
-      MoveCornersAroundMarkers(smooth.surface, &parameters);
-    } else {
-      MoveMarkersBetweenLinesToFeet(smooth.surface, &parameters);
-    }
-  }
+  SurfaceFit fit = IterateFits(sorted, noise, open, &parameters);
   if (noise.is_nominal) {
-    smooth.pole_covariance_m2.resize(0, 0);
-    smooth.pole_by_term.resize(0, 0);
+    fit.smooth.pole_covariance_m2.resize(0, 0);
+    fit.smooth.pole_by_term.resize(0, 0);
   }
-  CheckArea(sorted, ends, smooth.surface);
-  FittedSurface result;
-  result.surface = smooth.surface;
-  result.pole_covariance_m2 = smooth.pole_covariance_m2;
-  result.num_effective_parameters = smooth.num_effective_parameters;
-  AddDependence(parameters, terms, smooth, &result);
-  result.residuals = Residuals(sorted, parameters, terms, smooth.surface);
-  result.notes = sorted.notes;
-  result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
-  result.edges = EdgesOf(smooth);
-  NoteEdges(sorted, ends, result.edges, &result.notes);
-  SummarizeResiduals(&result);
-  return result;
+  CheckArea(sorted, ends, fit.smooth.surface);
+  return MakeResult(sorted, ends, parameters, fit);
 }
 
 }  // namespace velamap

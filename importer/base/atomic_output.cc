@@ -56,18 +56,6 @@ class OpenFile {
   int number_;
 };
 
-// Returns false, with the reason in errno, if not everything can be written.
-bool WriteAll(int file, const char* data, std::size_t size) {
-  while (size > 0) {
-    const ssize_t written = write(file, data, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    data += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 // Calls fsync() or syncfs(), which may be the first to notice a full disk.
 void Sync(const fs::path& path, int (*sync)(int)) {
   const OpenFile file(path, O_RDONLY);

@@ -254,6 +254,18 @@ std::uint64_t HashOfFile(const fs::path& path) {
   return hash;
 }
 
+bool WriteAll(int file, const void* data, std::size_t size) {
+  const char* rest = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = write(file, rest, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    rest += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
 void RemoveAll(const fs::path& path) noexcept {
   std::error_code ignored;
   fs::remove_all(path, ignored);

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -61,6 +62,10 @@ bool IsSameFile(const std::filesystem::path& path1, const std::filesystem::path&
 std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484222325u);
 
 std::uint64_t HashOfFile(const std::filesystem::path& path);
+
+// Writes to an open file or pipe. Returns false, with the reason in errno, if not everything can be
+// written.
+bool WriteAll(int file, const void* data, std::size_t size);
 
 // Removes a file, or a folder with everything in it. What cannot be removed stays.
 void RemoveAll(const std::filesystem::path& path) noexcept;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace velamap {
@@ -42,5 +43,15 @@ double RobustSigma(const std::vector<double>& values);
 
 // The root of the mean square; 0 for no values.
 double Rms(const std::vector<double>& values);
+
+// At most `max_count` items, evenly over the list.
+template <typename Item>
+std::vector<Item> Thinned(const std::vector<Item>& items, std::size_t max_count) {
+  if (items.size() <= max_count) return items;
+  std::vector<Item> thinned;
+  for (std::size_t i = 0; i < max_count; ++i)
+    thinned.push_back(items[i * items.size() / max_count]);
+  return thinned;
+}
 
 }  // namespace velamap

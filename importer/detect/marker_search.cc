@@ -106,8 +106,9 @@ struct Search {
 
   cv::Rect Image() const { return {{}, dark_on_light.size()}; }
   int ImageSizePx() const { return std::max(dark_on_light.cols, dark_on_light.rows); }
-  int NumCells() const { return CellsPerSide(dictionary, border_bits); }
-  double LeastContourPx() const { return kLeastContourPxPerCell * NumCells(); }
+  double LeastContourPx() const {
+    return kLeastContourPxPerCell * CellsPerSide(dictionary, border_bits);
+  }
 };
 
 void AddQuads(const Search& search, const Found& found, bool is_second_look,
@@ -165,7 +166,8 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   }
   AddQuads(search, found, false, quads);
   if (!looks_again) return;
-  for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, search.NumCells())) {
+  const int num_cells = CellsPerSide(search.dictionary, search.border_bits);
+  for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, num_cells)) {
     const cv::Rect around = cv::boundingRect(outline_px);
     // An outline near the border of the region is left to another region.
     if (Contains(region, Grown(around, kSearchReachPx) & search.Image())) {

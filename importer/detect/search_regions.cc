@@ -6,12 +6,6 @@
 #include "importer/detect/marker_search.h"
 
 namespace velamap {
-namespace {
-
-// The fixed cost of searching a region, in pixels.
-constexpr int kCallCostPx = 4000;
-
-}  // namespace
 
 bool FitsIn(const Box& box, const cv::Size& size, double margin_px) {
   return box.min.x() >= -margin_px && box.min.y() >= -margin_px &&

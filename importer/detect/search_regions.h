@@ -22,6 +22,9 @@ cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
 
 double AreaOf(const std::vector<cv::Rect>& regions);  // px^2; overlaps count more than once
 
+// The fixed cost of searching a region, in pixels.
+constexpr int kCallCostPx = 4000;
+
 // Rectangles that cover all `regions`, joined where one costs less than two.
 std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);
 

@@ -22,8 +22,6 @@ namespace {
 // Contents of the files by path relative to the folder, such as markers/marker_0012.svg.
 using OutputFiles = std::map<std::string, std::string>;
 
-int NumCells(const PrintedLook& look) { return CellsPerSide(look.dictionary, look.border_bits); }
-
 std::vector<Drawing> DrawSheets(const std::vector<Sheet>& sheets, const PrintedLook& look) {
   std::vector<Drawing> pages;
   for (const Sheet& sheet : sheets) {
@@ -40,7 +38,7 @@ void WarnOfNarrowMargin(const PrintSheetOptions& options, const PrintPlan& plan)
   if (!options.margin_mm || plan.markers.empty()) return;
   double default_mm = 0.0;
   for (const PrintedMarker& marker : plan.markers) {
-    default_mm = std::max(default_mm, DefaultMargin(marker.length_mm, NumCells(plan.look)));
+    default_mm = std::max(default_mm, DefaultMargin(marker.length_mm, plan.look.NumCells()));
   }
   if (*options.margin_mm >= default_mm) return;
   LogWarning(
@@ -65,7 +63,7 @@ void WarnOfMeasuredLength(const PrintOptions& options) {
 
 void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, OutputFiles* files) {
   for (const PrintedMarker& marker : plan.markers) {
-    const double margin_mm = MakeSticker(marker, NumCells(plan.look), options).margin_mm;
+    const double margin_mm = MakeSticker(marker, plan.look.NumCells(), options).margin_mm;
     const std::string name = fmt::format("markers/marker_{:04d}", marker.marker_id);
     if (options.write_svg) {
       (*files)[name + ".svg"] = SvgText(DrawSingleMarker(marker, plan.look, margin_mm));
@@ -137,7 +135,8 @@ PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_
     files["board.svg"] = SvgText(sheets.front());
     report.num_markers = plan.board->num_markers;
   } else {
-    const std::vector<Sheet> planned = PlanSheets(plan.markers, NumCells(plan.look), options.sheet);
+    const std::vector<Sheet> planned =
+        PlanSheets(plan.markers, plan.look.NumCells(), options.sheet);
     sheets = DrawSheets(planned, plan.look);
     report.num_markers = static_cast<int>(plan.markers.size());
     report.margin_mm = planned.front().stickers.front().margin_mm;

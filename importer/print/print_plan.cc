@@ -30,7 +30,7 @@ PrintedLook LoadLook(const PrintOptions& options) {
 
 int NumCells(const PrintOptions& options, const PrintedLook& look) {
   const int bits = options.codes.bits_per_side;
-  return bits > 0 ? bits + 2 * look.border_bits : CellsPerSide(look.dictionary, look.border_bits);
+  return bits > 0 ? bits + 2 * look.border_bits : look.NumCells();
 }
 
 double RequireLength(const PrintOptions& options) {

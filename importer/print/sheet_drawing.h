@@ -14,6 +14,8 @@ namespace velamap {
 struct PrintedLook {
   Dictionary dictionary;
   int border_bits = 1;
+
+  int NumCells() const { return CellsPerSide(dictionary, border_bits); }
 };
 
 // The text at the top of a sheet.

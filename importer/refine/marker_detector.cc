@@ -98,12 +98,6 @@ void AddReading(const FittedDetection& reading, std::vector<FittedDetection>* de
 
 }  // namespace
 
-std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
-                                           int border_bits, const ArucoDetectionOptions& options) {
-  return RefineMarkers(gray, SearchMarkers(gray, dictionary, border_bits, options), dictionary,
-                       border_bits, options);
-}
-
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,

@@ -1,5 +1,5 @@
-// Detects the markers of one grey image: searches for them (marker_search.h) and refines their
-// corners to a fraction of a pixel.
+// Refines the corners of the markers that were found in one grey image (marker_search.h) to a
+// fraction of a pixel.
 
 #pragma once
 
@@ -9,23 +9,19 @@
 
 #include "importer/detect/detection.h"
 #include "importer/detect/detection_options.h"
-#include "importer/detect/marker_search.h"
+#include "importer/detect/marker_quad.h"
 #include "importer/layout/dictionary.h"
 #include "importer/pattern/image_formation.h"
 
 namespace velamap {
 
-// Detects all markers of `dictionary` in an 8-bit grey image. Corners are in the image frame (px);
-// the half pixel between OpenCV's pixel centres and COLMAP's is already added. Edge refinement sets
-// the sigma of each corner, or marks the detection as a fallback. Ids may occur more than once
-// (duplicates.h). Thread-safe; colours are left zero.
-std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
-                                           int border_bits, const ArucoDetectionOptions& options);
-
-// The second half of DetectMarkers(): refines the corners of markers that have been found, in their
-// order, and reads the codes of fitted ones again (read_again.h). Of several readings at one place,
-// the one that fits best is kept. Leaves out markers that only a second look has found and that
-// cannot be fitted.
+// Refines the corners of markers that SearchMarkers() has found in an 8-bit grey image, in their
+// order, and reads the codes of fitted ones again (read_again.h). Corners are in the image frame
+// (px); the half pixel between OpenCV's pixel centres and COLMAP's is already added. Edge
+// refinement sets the sigma of each corner, or marks the detection as a fallback. Of several
+// readings at one place, the one that fits best is kept. Leaves out markers that only a second look
+// has found and that cannot be fitted. Ids may occur more than once (duplicates.h). Thread-safe;
+// colours are left zero.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,

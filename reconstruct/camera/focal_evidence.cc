@@ -99,6 +99,12 @@ std::optional<ViewErrors> ErrorsOf(const Camera& camera, const SquareView& view,
   return result;
 }
 
+// The normal equation of the logarithm of the focal length.
+struct FocalEquation {
+  double gradient = 0.0, information = 0.0;
+  int num_views = 0;  // that took part
+};
+
 // The views at one focal length.
 class PooledViews {
  public:
@@ -123,6 +129,19 @@ class PooledViews {
       cost += loss.Value(errors ? errors->errors.squaredNorm() : kFarOff * variance) / variance;
     }
     return cost;
+  }
+
+  FocalEquation Equation(const Camera& camera, double variance) const {
+    const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
+    FocalEquation equation;
+    for (const auto& errors : Evaluate(camera, true)) {
+      if (!errors) continue;
+      ++equation.num_views;
+      const double weight = loss.Weight(errors->errors.squaredNorm()) / variance;
+      equation.gradient += weight * errors->by_log_focal.dot(errors->errors);
+      equation.information += weight * errors->by_log_focal.squaredNorm();
+    }
+    return equation;
   }
 
   // The variance of the errors relative to the views' sigmas, from the median.
@@ -183,19 +202,11 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   }
   double information = 0.0;
   for (int i = 0; i < kMaxNumSteps; ++i) {
-    const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
-    double gradient = 0.0;
-    information = 0.0;
-    result.num_views = 0;
-    for (const auto& errors : pooled.Evaluate(lens(best), true)) {
-      if (!errors) continue;
-      ++result.num_views;
-      const double weight = loss.Weight(errors->errors.squaredNorm()) / variance;
-      gradient += weight * errors->by_log_focal.dot(errors->errors);
-      information += weight * errors->by_log_focal.squaredNorm();
-    }
+    const FocalEquation equation = pooled.Equation(lens(best), variance);
+    information = equation.information;
+    result.num_views = equation.num_views;
     if (!(information > 0)) break;
-    const double step = std::clamp(-gradient / information, -kGridStep, kGridStep);
+    const double step = std::clamp(-equation.gradient / information, -kGridStep, kGridStep);
     best = std::clamp(best + step, low, high);
     if (std::abs(step) < 1e-4) break;
   }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+
+#include "importer/geometry/disjoint_sets.h"
 
 namespace velamap {
 namespace {
@@ -24,26 +27,19 @@ std::vector<MarkerChain> FindClusters(const std::vector<OrientedMarker>& markers
     return Distance(markers[rest[i]], markers[rest[j]]) <=
            kMaxTimesNearest * std::min(nearest[i], nearest[j]);
   };
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> cluster_of(rest.size(), kNone);
-  std::size_t num_clusters = 0;
-  for (std::size_t first = 0; first < rest.size(); ++first) {
-    if (cluster_of[first] != kNone) continue;
-    std::vector<std::size_t> open{first};
-    cluster_of[first] = num_clusters;
-    while (!open.empty()) {
-      const std::size_t i = open.back();
-      open.pop_back();
-      for (std::size_t j = 0; j < rest.size(); ++j) {
-        if (cluster_of[j] != kNone || !are_near(i, j)) continue;
-        cluster_of[j] = num_clusters;
-        open.push_back(j);
-      }
+  DisjointSets sets(rest.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    for (std::size_t j = i + 1; j < rest.size(); ++j) {
+      if (are_near(i, j)) sets.Join(i, j);
     }
-    ++num_clusters;
   }
-  std::vector<MarkerChain> clusters(num_clusters);
-  for (std::size_t i = 0; i < rest.size(); ++i) clusters[cluster_of[i]].push_back(rest[i]);
+  std::vector<MarkerChain> clusters;  // by their first markers
+  std::map<std::size_t, std::size_t> cluster_of_set;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const auto [cluster, is_new] = cluster_of_set.try_emplace(sets.Find(i), clusters.size());
+    if (is_new) clusters.emplace_back();
+    clusters[cluster->second].push_back(rest[i]);
+  }
   return clusters;
 }
 

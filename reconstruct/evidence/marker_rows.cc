@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "importer/geometry/disjoint_sets.h"
 #include "reconstruct/evidence/marker_clusters.h"
 #include "reconstruct/evidence/marker_links.h"
 
@@ -20,20 +20,6 @@ constexpr double kParallel = 0.8;  // cosine
 constexpr double kLikeSteps = 1.6, kMaxStepsBetweenRows = 12.0;
 // A marker on no row belongs to a group that has a marker within this many steps.
 constexpr double kMaxStepsFromGroup = 2.0;
-
-// Disjoint sets of indices (union-find).
-class Sets {
- public:
-  explicit Sets(std::size_t num) : parent_(num) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t Find(std::size_t i) const {
-    while (parent_[i] != i) i = parent_[i];
-    return i;
-  }
-  void Join(std::size_t a, std::size_t b) { parent_[Find(b)] = Find(a); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 struct Row {
   MarkerChain chain;
@@ -137,13 +123,13 @@ class RowFinder {
   }
 
   void JoinRows() {
-    Sets by_markers(rows_.size());
+    DisjointSets by_markers(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       for (std::size_t j = i + 1; j < rows_.size(); ++j) {
         if (ShareMarkers(rows_[i].chain, rows_[j].chain)) by_markers.Join(i, j);
       }
     }
-    Sets all = by_markers;
+    DisjointSets all = by_markers;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       for (std::size_t j = i + 1; j < rows_.size(); ++j) {
         if (AreTogether(rows_[i], rows_[j])) all.Join(i, j);

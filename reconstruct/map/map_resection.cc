@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "importer/base/statistics.h"
 #include "importer/geometry/p3p.h"
 #include "importer/geometry/ransac.h"
 #include "reconstruct/map/map_refinement.h"
@@ -63,15 +64,6 @@ PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker
     if (agreeing != nullptr) agreeing->push_back({marker.observation, best_place});
   }
   return hypothesis;
-}
-
-// At most `max_count` markers, evenly over the list.
-std::vector<KnownMarker> Thinned(const std::vector<KnownMarker>& known, std::size_t max_count) {
-  if (known.size() <= max_count) return known;
-  std::vector<KnownMarker> thinned;
-  for (std::size_t i = 0; i < max_count; ++i)
-    thinned.push_back(known[i * known.size() / max_count]);
-  return thinned;
 }
 
 std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {

@@ -93,6 +93,28 @@ NormalMatrix SumProducts(const MarkerJacobian& jacobian, int num_threads) {
   return normal;
 }
 
+// The lower root of the matrix that the global parameters have once the markers are eliminated.
+// Nothing where the markers leave one of them undetermined.
+std::optional<Eigen::MatrixXd> RootOfGlobals(const Eigen::MatrixXd& globals,
+                                             const RowMajorMatrix& factor, int num_threads) {
+  Eigen::MatrixXd schur = globals;
+  ForEachPanel(schur.cols(), num_threads, [&](Eigen::Index begin, Eigen::Index width) {
+    const Eigen::Index height = schur.rows() - begin;
+    schur.block(begin, begin, height, width).noalias() -=
+        factor.rightCols(height).transpose() * factor.middleCols(begin, width);
+  });
+  const Eigen::LLT<Eigen::MatrixXd> decomposition(schur.selfadjointView<Eigen::Lower>());
+  if (decomposition.info() != Eigen::Success) return std::nullopt;
+  Eigen::MatrixXd root = decomposition.matrixL();
+  // A global parameter is undetermined if the markers absorb all of it except for rounding errors.
+  constexpr double kMinShareOfInformation = 1e-14;
+  for (Eigen::Index i = 0; i < schur.rows(); ++i) {
+    const double left = root(i, i) * root(i, i);
+    if (!(left > kMinShareOfInformation * globals(i, i))) return std::nullopt;
+  }
+  return root;
+}
+
 }  // namespace
 
 MarkerJacobian EvaluateJacobian(const MarkerProblem& problem) {
@@ -155,21 +177,9 @@ std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jaco
   });
   if (!is_definite) return std::nullopt;
 
-  Eigen::MatrixXd schur = normal.globals;
-  ForEachPanel(schur.cols(), num_threads, [&](Eigen::Index begin, Eigen::Index width) {
-    const Eigen::Index height = schur.rows() - begin;
-    schur.block(begin, begin, height, width).noalias() -=
-        factor.rightCols(height).transpose() * factor.middleCols(begin, width);
-  });
-  const Eigen::LLT<Eigen::MatrixXd> root(schur.selfadjointView<Eigen::Lower>());
-  if (root.info() != Eigen::Success) return std::nullopt;
-  covariance.root = root.matrixL();
-  // A global parameter is undetermined if the markers absorb all of it except for rounding errors.
-  constexpr double kMinShareOfInformation = 1e-14;
-  for (Eigen::Index i = 0; i < schur.rows(); ++i) {
-    const double left = covariance.root(i, i) * covariance.root(i, i);
-    if (!(left > kMinShareOfInformation * normal.globals(i, i))) return std::nullopt;
-  }
+  auto root = RootOfGlobals(normal.globals, factor, num_threads);
+  if (!root) return std::nullopt;
+  covariance.root = *std::move(root);
 
   covariance.marker_blocks.resize(num_markers);
   ParallelFor(num_markers, num_threads, [&](std::size_t idx) {

@@ -15,8 +15,8 @@ using ::testing::HasSubstr;
 
 std::vector<BadInput> AllCases() {
   std::vector<BadInput> cases;
-  for (const auto& some :
-       {OutputCases(), SourceCases(), InputCases(), FileCases(), ProcessCases(), CommandCases()}) {
+  for (const auto& some : {OutputCases(), SourceCases(), InputCases(), FileCases(), ProcessCases(),
+                           CommandCases(), WishCases()}) {
     cases.insert(cases.end(), some.begin(), some.end());
   }
   return cases;

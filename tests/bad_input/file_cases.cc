@@ -30,8 +30,8 @@ std::vector<BadInput> Calibrations() {
        [](const fs::path& dir) { Replace(dir / "camera.yml", "[300", "[-300"); }}};
 }
 
-// Files on which OpenCV's parsers crash, as a calibration and as a dictionary.
-std::vector<BadInput> Walls() {
+// Names and texts on which OpenCV's parsers crash.
+std::vector<std::pair<std::string, std::string>> TextsForWalls() {
   constexpr std::size_t kDeep = 200000;
   const auto repeat = [](const std::string& text) {
     std::string repeated;
@@ -45,32 +45,41 @@ std::vector<BadInput> Walls() {
     aliases += "]\n";
   }
   const std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>";
-  const std::vector<std::pair<std::string, std::string>> texts = {
-      {"XmlCutOffInAnAttribute", xml + "\n<camera_matrix type_id="},
-      {"XmlCutOffInItsFirstLine", "<?xml version=\"1."},
-      {"XmlCutOffInAnElement", xml + "<image_width>320</image_wi"},
-      {"XmlOfAnotherProgram", "<?xml version=\"1.0\"?>\n<svg></svg>"},
-      {"DeepXml", xml + repeat("<a>") + repeat("</a>") + "</opencv_storage>"},
-      {"DeepJson", "{\"a\":" + repeat("[") + repeat("]") + "}"},
-      {"DeepYaml", "%YAML:1.0\n---\na: " + repeat("[") + repeat("]") + "\n"},
-      {"YamlCutOff", "%YAML:1.0\n---\na: [1, 2"},
-      {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
-      {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
-      {"YamlOfAliases", aliases},
-      {"YamlOfDocumentsWithoutEnd", "%YAML:1.0\n---\nn\n---\n,markers: 2\nmarkersize: 3\n"},
-      {"YamlOfADocumentAfterTheEnd",
-       "%YAML:1.0\nnmarkers: 1\n...\n---\na: " + std::string(200000, '[')},
-      {"YamlOfAnAliasOfItself", "%YAML:1.0\n---\na: &a [*a, *a]\n"},
-      {"JsonCutOff", "{\"image_width\": 320,"},
-      {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
+  return {{"XmlCutOffInAnAttribute", xml + "\n<camera_matrix type_id="},
+          {"XmlCutOffInItsFirstLine", "<?xml version=\"1."},
+          {"XmlCutOffInAnElement", xml + "<image_width>320</image_wi"},
+          {"XmlOfAnotherProgram", "<?xml version=\"1.0\"?>\n<svg></svg>"},
+          {"DeepXml", xml + repeat("<a>") + repeat("</a>") + "</opencv_storage>"},
+          {"DeepJson", "{\"a\":" + repeat("[") + repeat("]") + "}"},
+          {"DeepYaml", "%YAML:1.0\n---\na: " + repeat("[") + repeat("]") + "\n"},
+          {"YamlCutOff", "%YAML:1.0\n---\na: [1, 2"},
+          {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
+          {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
+          {"YamlOfAliases", aliases},
+          {"YamlOfDocumentsWithoutEnd", "%YAML:1.0\n---\nn\n---\n,markers: 2\nmarkersize: 3\n"},
+          {"YamlOfADocumentAfterTheEnd",
+           "%YAML:1.0\nnmarkers: 1\n...\n---\na: " + std::string(200000, '[')},
+          {"YamlOfAnAliasOfItself", "%YAML:1.0\n---\na: &a [*a, *a]\n"},
+          {"JsonCutOff", "{\"image_width\": 320,"},
+          {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
+}
+
+// The same texts as a calibration and as a dictionary.
+std::vector<BadInput> Walls() {
   std::vector<BadInput> cases;
-  for (const auto& [name, text] : texts) {
+  for (const auto& [name, text] : TextsForWalls()) {
     cases.push_back({"Calibration" + name, MainJob("grey", "bad.yml"), 2,
                      "bad.yml: not a readable OpenCV FileStorage file", Write("bad.yml", text)});
     cases.push_back({"Dictionary" + name,
                      MainJob("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1"), 2,
                      "bad.yml: not a readable cv::aruco dictionary file", Write("bad.yml", text)});
   }
+  return cases;
+}
+
+// Byte order marks, other encodings, and too many bytes.
+std::vector<BadInput> Encodings() {
+  std::vector<BadInput> cases;
   const std::vector<std::pair<std::string, std::string>> calls = {
       {"Calibration", MainJob("grey", "bad.yml")},
       {"Dictionary", MainJob("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1")},
@@ -92,6 +101,33 @@ std::vector<BadInput> Walls() {
          }});
   }
   return cases;
+}
+
+// Databases that are read but hold impossible numbers.
+std::vector<BadInput> NumbersOfDatabases() {
+  const std::string registered =
+      "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+      "--output_path @/out";
+  return {
+      {"FocalLengthBelowZeroInADatabase", registered, 2, "not positive",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db",
+                "UPDATE cameras SET params = CAST(zeroblob(8) || substr(params, 9) AS BLOB)");
+       }},
+      {"MarkerIdsOfADatabaseOutOfRange", registered, 2, "is no marker id",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db",
+                "UPDATE marker_detections SET marker_id = marker_id + 10000");
+       }},
+      {"ADatabaseWithoutTheCamerasOfItsImages", registered, 2, "names camera 1",
+       [](const fs::path& dir) { RunSql(dir / "workspace/database.db", "DELETE FROM cameras"); }},
+      {"AnUnknownCameraModelOfADatabase", registered, 2, "does not know",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE cameras SET model = 99");
+       }},
+      {"ACameraWithoutPixelsInADatabase", registered, 2, "without pixels", [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE cameras SET width = 0");
+       }}};
 }
 
 // Files that are read but hold impossible numbers.
@@ -120,32 +156,9 @@ std::vector<BadInput> Numbers() {
     WriteTextFile(dir / "model/points3D.txt",
                   std::regex_replace(text, std::regex("\\n(\\d+) \\S+ "), "\n$1 1e200 "));
   };
-  const std::string registered =
-      "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-      "--output_path @/out";
   return {
       {"FocalLengthBelowZeroInOneAxis", MainJob("grey", "bad.txt"), 2, "must be positive",
        Write("bad.txt", "1 PINHOLE 320 240 300 -300 160 120\n")},
-      {"FocalLengthBelowZeroInADatabase", registered, 2, "not positive",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db",
-                "UPDATE cameras SET params = CAST(zeroblob(8) || substr(params, 9) AS BLOB)");
-       }},
-      {"MarkerIdsOfADatabaseOutOfRange", registered, 2, "is no marker id",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db",
-                "UPDATE marker_detections SET marker_id = marker_id + 10000");
-       }},
-      {"ADatabaseWithoutTheCamerasOfItsImages", registered, 2, "names camera 1",
-       [](const fs::path& dir) { RunSql(dir / "workspace/database.db", "DELETE FROM cameras"); }},
-      {"AnUnknownCameraModelOfADatabase", registered, 2, "does not know",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db", "UPDATE cameras SET model = 99");
-       }},
-      {"ACameraWithoutPixelsInADatabase", registered, 2, "without pixels",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db", "UPDATE cameras SET width = 0");
-       }},
       {"FocalLengthBelowZeroExported", exported, 2, "not positive", negative},
       {"FocalLengthBelowZeroAdjusted", adjusted, 2, "not positive", negative},
       {"AFarPointExported", exported, 2, "has a coordinate beyond", far},
@@ -203,7 +216,8 @@ std::vector<BadInput> PriorShapes() {
 
 std::vector<BadInput> FileCases() {
   std::vector<BadInput> cases = Calibrations();
-  for (const auto& more : {Walls(), Numbers(), Meshes(), PriorShapes()}) {
+  for (const auto& more :
+       {Walls(), Encodings(), NumbersOfDatabases(), Numbers(), Meshes(), PriorShapes()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

@@ -23,7 +23,7 @@ std::function<void(const fs::path&)> Put(const std::string& name) {
   };
 }
 
-std::vector<BadInput> OutputsThatAreInputs() {
+std::vector<BadInput> ShapesOverInputs() {
   return {
       {"CsvOverTheShape", kAnalyze + kShape + "/shape.csv --csv_path " + kShape + "/shape.csv", 2,
        "is also the --shape_path"},
@@ -72,7 +72,11 @@ std::vector<BadInput> OutputsThatAreInputs() {
       {"ComparisonOverTheUncertainty",
        "shape_comparer --shape_path " + kShape + " --reference_path " + kShape +
            " --csv_path @/workspace/sparse/0/uncertainty.bin",
-       2, "is also the --shape_path; give another"},
+       2, "is also the --shape_path; give another"}};
+}
+
+std::vector<BadInput> ModelsAndDatabasesOverInputs() {
+  return {
       {"LogOverTheDatabase",
        "bundle_adjuster --input_path " + kSeed +
            " --output_path @/out --database_path @/workspace/database.db --log_path "
@@ -251,8 +255,9 @@ std::vector<BadInput> SecondRuns() {
 }  // namespace
 
 std::vector<BadInput> OutputCases() {
-  std::vector<BadInput> cases = OutputsThatAreInputs();
-  for (const auto& more : {FoldersOfOthers(), NamesThatLeadOut(), SecondRuns()}) {
+  std::vector<BadInput> cases = ShapesOverInputs();
+  for (const auto& more :
+       {ModelsAndDatabasesOverInputs(), FoldersOfOthers(), NamesThatLeadOut(), SecondRuns()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

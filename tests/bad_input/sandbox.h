@@ -69,5 +69,6 @@ std::vector<BadInput> InputCases();
 std::vector<BadInput> FileCases();
 std::vector<BadInput> ProcessCases();
 std::vector<BadInput> CommandCases();
+std::vector<BadInput> WishCases();
 
 }  // namespace velamap

@@ -1,6 +1,5 @@
 // A result is of the data it was asked for.
 
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -11,7 +10,6 @@ namespace velamap {
 namespace {
 
 const std::vector<std::string> kLog = {"workspace/velamap.log"};
-const std::string kExport = "shape_exporter --input_path @/workspace/sparse/0 --shape_path @/out ";
 
 // Another picture in the place of a photograph.
 void SwapPhotographs(const fs::path& dir) {
@@ -33,32 +31,42 @@ const std::string kImportNoVideo =
     "marker_importer --image_path @/video.mp4 --camera_path @/camera.yml --layout_path "
     "@/layout.yml --database_path @/new.db";
 
-std::vector<BadInput> ChangedSources() {
+std::vector<BadInput> ChangedSourcesOfAWorkspace() {
   const std::string of_video =
       "automatic_reconstructor --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
       "@/layout.yml --backend markers --workspace_path @/workspace";
+  return {{"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png has changed since it was imported",
+           SwapPhotographs, kLog},
+          {"OtherPhotographsInAnotherFolder",
+           "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
+           "@/layout.yml --backend markers --workspace_path @/workspace",
+           2, "1.png has changed since it was imported",
+           [](const fs::path& dir) {
+             fs::copy(dir / "images", dir / "other");
+             fs::copy(dir / "grey/a.png", dir / "other/1.png",
+                      fs::copy_options::overwrite_existing);
+           },
+           kLog},
+          {"APhotographDeleted", kRerun, 2, "holds 4.png, which is not in",
+           [](const fs::path& dir) { fs::remove(dir / "images/4.png"); }, kLog},
+          {"PhotographsOfOtherNames",
+           "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --layout_path "
+           "@/layout.yml --backend markers --workspace_path @/workspace",
+           2,
+           "holds 1.png, which is not in",
+           {},
+           kLog},
+          {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
+          {"FramesThatTheOptionsLeaveOut",
+           of_video + "2 --Video.frame_step 2",
+           2,
+           "holds 2 frames, such as frame_000001.jpg",
+           [of_video](const fs::path& dir) { RunGood(dir, of_video + "2"); },
+           {"workspace2/velamap.log"}}};
+}
+
+std::vector<BadInput> ChangedSourcesOfADatabase() {
   return {
-      {"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png has changed since it was imported",
-       SwapPhotographs, kLog},
-      {"OtherPhotographsInAnotherFolder",
-       "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
-       "@/layout.yml --backend markers --workspace_path @/workspace",
-       2, "1.png has changed since it was imported",
-       [](const fs::path& dir) {
-         fs::copy(dir / "images", dir / "other");
-         fs::copy(dir / "grey/a.png", dir / "other/1.png", fs::copy_options::overwrite_existing);
-       },
-       kLog},
-      {"APhotographDeleted", kRerun, 2, "holds 4.png, which is not in",
-       [](const fs::path& dir) { fs::remove(dir / "images/4.png"); }, kLog},
-      {"PhotographsOfOtherNames",
-       "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --layout_path "
-       "@/layout.yml --backend markers --workspace_path @/workspace",
-       2,
-       "holds 1.png, which is not in",
-       {},
-       kLog},
-      {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
       {"AnotherVideo", kImportClipAgain, 2, "another video than",
        [](const fs::path& dir) {
          RunGood(dir, kImportClipAgain);
@@ -66,12 +74,6 @@ std::vector<BadInput> ChangedSources() {
        }},
       {"AVideoWithOtherOptions", kImportClipAgain + " --ArucoDetection.corner_refinement subpix", 2,
        "was made with other detection options", [](const fs::path& dir) { RunGood(dir, kImport); }},
-      {"FramesThatTheOptionsLeaveOut",
-       of_video + "2 --Video.frame_step 2",
-       2,
-       "holds 2 frames, such as frame_000001.jpg",
-       [of_video](const fs::path& dir) { RunGood(dir, of_video + "2"); },
-       {"workspace2/velamap.log"}},
       {"ImportedAnewFromNoVideo", kImportNoVideo + " --import_anew 1", 2, "video.mp4",
        [](const fs::path& dir) {
          RunGood(dir, kImportClipAgain);
@@ -158,90 +160,6 @@ std::vector<BadInput> Parts() {
        2, "not an SQLite database", import_both}};
 }
 
-// Wishes that cannot be granted, and data that have no result.
-std::vector<BadInput> Wishes() {
-  const auto write_layout = [](const std::string& rest) {
-    return [rest](const fs::path& dir) {
-      WriteTextFile(dir / "own.yml", "dictionary: DICT_4X4_50\nmarker_length: 0.1\n" + rest);
-    };
-  };
-  const auto at_one_place = [](const fs::path& dir) {
-    fs::create_directory(dir / "model");
-    for (const char* file : {"cameras.txt", "images.txt"}) {
-      fs::copy(dir / "workspace/sparse/0" / file, dir / "model" / file);
-    }
-    std::string points;
-    std::istringstream lines(ReadFileBytes(dir / "workspace/sparse/0/points3D.txt"));
-    for (std::string line, id, number; std::getline(lines, line);) {
-      if (line.front() == '#') continue;
-      std::istringstream words(line);
-      words >> id >> number >> number >> number;
-      points += id + " 0.1 0.2 3";
-      for (std::string word; words >> word;) points += ' ' + word;
-      points += '\n';
-    }
-    WriteTextFile(dir / "model/points3D.txt", points);
-  };
-  return {
-      {"FrameByMarkersThatAreNotThere", kExport + "--marker_length 0.1 --frame 900,901,902", 2,
-       "--frame: the frame 'markers 900 901 902' is not possible"},
-      {"FrameByMarkersThatTheLayoutDoesNotName",
-       kExport + "--layout_path @/layout.yml --frame 7,8,9", 2,
-       "--frame: the frame 'markers 7 8 9' is not possible: the layout names no marker 7"},
-      {"FrameByAReferencePartThatIsNone",
-       kExport + "--layout_path @/layout.yml --frame reference_part", 2,
-       "the layout names no reference_part"},
-      {"FrameByLinesThatAreNone", kExport + "--marker_length 0.1 --frame lines", 2,
-       "the layout has no horizontal lines"},
-      {"FrameThatIsNone", kExport + "--marker_length 0.1 --frame sideways", 2,
-       "--frame: 'sideways' is not a frame"},
-      {"FrameRefusedBeforeTheWork", kRerun + " --frame reference_part", 2,
-       "the layout names no reference_part"},
-      {"ALayoutOfOtherMarkersExported", kExport + "--layout_path @/own.yml", 1, "is in the layout",
-       write_layout("parts:\n  board: {markers: [40, 41]}\n")},
-      {"ALayoutOfOtherMarkersAnalyzed",
-       "shape_analyzer --shape_path @/workspace/shape --layout_path @/own.yml", 1,
-       "is in the layout", write_layout("parts:\n  board: {markers: [40, 41]}\n")},
-      {"ALayoutOfAnotherDictionaryRegistered",
-       "frame_registrator --database_path @/workspace/database.db --output_path @/new/seed "
-       "--layout_path @/own.yml",
-       2, "has dictionary=DICT_5X5_50 border_bits=1, but",
-       [](const fs::path& dir) {
-         WriteTextFile(dir / "own.yml", "dictionary: DICT_5X5_50\nmarker_length: 0.1\n");
-       }},
-      {"ADatabaseOfOtherNames",
-       "bundle_adjuster --backend markers --marker_length 0.1 --output_path @/new/model "
-       "--input_path @/workspace/sparse/0 --database_path @/workspace/database.db",
-       2, "is not the one of",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db", "UPDATE images SET name = 'other_' || name");
-       }},
-      {"ADatabaseWithANameTwice",
-       "frame_registrator --marker_length 0.1 --output_path @/new/seed --database_path "
-       "@/workspace/database.db",
-       2, "two images are named 1.png",
-       [](const fs::path& dir) {
-         RunSql(dir / "workspace/database.db",
-                "CREATE TABLE loose AS SELECT * FROM images; DROP TABLE images; "
-                "ALTER TABLE loose RENAME TO images; UPDATE images SET name = '1.png'");
-       }},
-      {"PointsAtOnePlaceForMarkers",
-       "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/model --output_path "
-       "@/out",
-       1, "lie at one place", at_one_place},
-      {"PointsAtOnePlaceForColmap", "bundle_adjuster --input_path @/model --output_path @/out", 1,
-       "lie at one place", at_one_place},
-      {"AMarkerThatTheDictionaryDoesNotHave",
-       "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path @/own.yml "
-       "--database_path @/new.db",
-       2, "names marker 50, which the dictionary DICT_4X4_50 does not have",
-       write_layout("parts:\n  board: {markers: [49, 50]}\n")},
-      {"ALengthOfAMarkerThatTheDictionaryDoesNotHave",
-       "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path @/own.yml "
-       "--database_path @/new.db",
-       2, "names marker 60", write_layout("marker_lengths: {60: 0.2}\n")}};
-}
-
 // What camera and print do to edges, as the database says.
 std::vector<BadInput> ImageFormations() {
   const std::vector<std::pair<std::string, std::string>> bad_values = {
@@ -291,8 +209,8 @@ std::vector<BadInput> ImageFormations() {
 }  // namespace
 
 std::vector<BadInput> SourceCases() {
-  std::vector<BadInput> cases = ChangedSources();
-  for (const auto& more : {Parts(), Wishes(), ImageFormations()}) {
+  std::vector<BadInput> cases = ChangedSourcesOfAWorkspace();
+  for (const auto& more : {ChangedSourcesOfADatabase(), Parts(), ImageFormations()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "importer/refine/corner_refinement.h"
-#include "importer/refine/marker_detector.h"
+#include "tests/support/detect_markers.h"
 #include "tests/support/render/marker_renderer.h"
 
 namespace velamap {

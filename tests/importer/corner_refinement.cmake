@@ -6,13 +6,16 @@ velamap_test(
     refine/side_shift_test.cc
     pattern/wide_blur_test.cc
     refine/read_again_test.cc
-    refine/fit_models_test.cc
+    refine/edge_fit_test.cc
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
     formation/formation_scenes.cc
     formation/processed_pictures_test.cc
+    lanes/float_lanes_test.cc
+    lanes/normal_lanes_test.cc
     pattern/fit_equations_test.cc
     pattern/image_formation_test.cc
+    pattern/pattern_picture_test.cc
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc

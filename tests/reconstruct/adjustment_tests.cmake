@@ -14,7 +14,9 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     sizes/few_markers_test.cc
     sizes/marker_sizes_test.cc
     sizes/part_sizes_test.cc
+    problem/error_correlation_test.cc
     problem/marker_uncertainty_test.cc
+    problem/scale_bar_test.cc
     adjust/scale_bar_verdict_test.cc
     scene_model.cc
     solve/schur_complement_test.cc

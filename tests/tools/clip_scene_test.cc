@@ -95,7 +95,7 @@ TEST(ClipSceneTest, CameraGoesAroundAsFarAsIsAsked) {
     const ClipScene scene = MakeClipScene(options);
     const Rigid3 last_from_first = scene.cam_from_world(1) * Inverse(scene.cam_from_world(0));
     const double angle_deg = kDegPerRad * AngularDistance(last_from_first, Rigid3{});
-    EXPECT_NEAR(angle_deg, 2 * drift_deg, 12);
+    EXPECT_NEAR(angle_deg, 2 * drift_deg, 4);
   }
 }
 

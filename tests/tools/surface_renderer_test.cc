@@ -8,7 +8,7 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/quad.h"
-#include "importer/refine/marker_detector.h"
+#include "tests/support/detect_markers.h"
 
 namespace velamap {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <sstream>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -11,62 +9,15 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
-#include "importer/text/text_file.h"
+#include "workflows/options/given_values.h"
 #include "workflows/options/help_text.h"
-#include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"
+#include "workflows/options/project_file.h"
 
 namespace velamap {
 namespace {
 
 namespace po = boost::program_options;
-
-constexpr const char* kProjectPath = "project_path";
-
-// Where and how a value was given, for messages.
-struct GivenValue {
-  std::string text;
-  std::string given_as;  // "--name" or "file: name"
-};
-
-using OptionsByName = std::map<std::string, Option>;    // under each of their names
-using GivenValues = std::map<std::string, GivenValue>;  // under the first name of the option
-
-std::vector<std::string> NamesOf(const Option& option) {
-  std::vector<std::string> names = {option.name};
-  names.insert(names.end(), option.short_names.begin(), option.short_names.end());
-  names.insert(names.end(), option.old_names.begin(), option.old_names.end());
-  return names;
-}
-
-OptionsByName IndexByName(const std::vector<OptionGroup>& groups) {
-  OptionsByName options;
-  for (const OptionGroup& group : groups) {
-    for (const Option& option : group.options) {
-      for (const std::string& name : NamesOf(option)) options.emplace(name, option);
-    }
-  }
-  return options;
-}
-
-po::options_description DescribeForParsing(const OptionsByName& options) {
-  po::options_description description;
-  for (const auto& [name, option] : options) {
-    description.add_options()(name.c_str(), po::value<std::string>(), "");
-  }
-  return description;
-}
-
-std::string HelpHint(const CommandSyntax& syntax) {
-  return fmt::format("see velamap {} --help_all", syntax.name);
-}
-
-// `dashes` stand before the names of options where the unknown one stands.
-std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
-                       const std::string& dashes = "") {
-  const std::string nearest = NearestName(unknown_name, names);
-  return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
-}
 
 std::string DidYouMeanOption(const OptionsByName& options, const std::string& unknown_name) {
   std::vector<std::string> names = {"help", "help_all"};
@@ -74,28 +25,6 @@ std::string DidYouMeanOption(const OptionsByName& options, const std::string& un
   // --help=1 is no misspelling of another option.
   if (std::find(names.begin(), names.end(), unknown_name) != names.end()) return "";
   return DidYouMean(unknown_name, names, "--");
-}
-
-// Empty for a name without a section.
-std::string SectionOf(const std::string& name) {
-  const std::size_t dot = name.find('.');
-  return dot == std::string::npos ? "" : name.substr(0, dot);
-}
-
-// What is wrong with a key that neither this command nor another one has.
-std::string DescribeUnknownKey(const OptionsByName& options, std::set<std::string> known_names,
-                               const std::string& name) {
-  for (const auto& [known_name, option] : options) known_names.insert(known_name);
-  std::set<std::string> sections;
-  for (const std::string& known_name : known_names) sections.insert(SectionOf(known_name));
-  const std::string section = SectionOf(name);
-  if (sections.count(section) > 0) {
-    return fmt::format("unknown key {}; {}", name,
-                       DidYouMean(name, {known_names.begin(), known_names.end()}));
-  }
-  sections.erase("");
-  return fmt::format("unknown section [{}] of the key {}; {}", section, name,
-                     DidYouMean(section, {sections.begin(), sections.end()}));
 }
 
 // Throws InputError for an option without its value, after which the parser takes the next word.
@@ -110,23 +39,6 @@ void CheckTypedValue(const CommandSyntax& syntax, const Option& option, const st
   if (value.empty() && option.path_use != PathUse::kNone) {
     throw InputError(fmt::format(
         "{}: needs a value and has an empty one; give a path, or leave it out", given_as));
-  }
-}
-
-void AddGiven(const Option& option, const std::string& name, const GivenValue& given,
-              GivenValues* values) {
-  const auto [earlier, is_first] = values->emplace(option.name, given);
-  const std::string& given_before = earlier->second.given_as;
-  if (!is_first && given_before == given.given_as) {
-    throw InputError(fmt::format("{}: given twice; give it once", given.given_as));
-  }
-  if (!is_first) {
-    throw InputError(fmt::format("{} and {}: two names of one option; give one of them",
-                                 given_before, given.given_as));
-  }
-  const std::vector<std::string>& old_names = option.old_names;
-  if (std::find(old_names.begin(), old_names.end(), name) != old_names.end()) {
-    WarnAboutOldName(given.given_as, option.name);
   }
 }
 
@@ -159,39 +71,6 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
     throw InputError(fmt::format("{}: needs a value; {}", error.tokens(), HelpHint(syntax)));
   } catch (const po::error& error) {
     throw InputError(fmt::format("{}; {}", error.what(), HelpHint(syntax)));
-  }
-  return values;
-}
-
-GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& options,
-                            const std::string& path, const std::set<std::string>& known_names) {
-  const std::string text = ReadTextFile(path, fmt::format("project file (--{})", kProjectPath));
-  if (text.find('\0') != std::string::npos) {
-    throw InputError(path + ": a zero byte, which no project file holds; save it as UTF-8");
-  }
-  std::istringstream stream(text);
-  GivenValues values;
-  try {
-    constexpr bool kAllowUnregistered = true;
-    const po::options_description description = DescribeForParsing(options);
-    for (const auto& given :
-         po::parse_config_file(stream, description, kAllowUnregistered).options) {
-      const std::string& name = given.string_key;
-      if (given.unregistered && known_names.count(name) > 0) continue;
-      if (name == kProjectPath) {
-        throw InputError(fmt::format(
-            "{}: {}: a project file cannot name another one; remove this key", path, name));
-      }
-      if (given.unregistered) {
-        throw InputError(fmt::format(
-            "{}: {}{}", path, DescribeUnknownKey(options, known_names, name), HelpHint(syntax)));
-      }
-      AddGiven(options.at(name), name, {given.value.front(), path + ": " + name}, &values);
-    }
-  } catch (const po::error& error) {
-    throw InputError(
-        fmt::format("{}: {}; expected key=value lines, and [Section] before the keys of a section",
-                    path, error.what()));
   }
   return values;
 }

@@ -66,8 +66,6 @@ class Clip {
 
 }  // namespace
 
-double PlanPrecision::MedianMarkerSigma_mm() const { return MedianSigma(marker_sigma_mm); }
-
 PlanPrecision SimulatePlan(const PlannedSurface& surface, const Camera& camera,
                            const PlannedPath& path, const ShootPlanOptions& options) {
   Clip clip(surface, camera, options);

@@ -20,8 +20,6 @@ struct PlanPrecision {
   // scale: distance_sigma_mm and distance_after_scaling_sigma_mm of shape_analyzer.
   double distance_sigma_mm = 0.0, distance_after_scaling_sigma_mm = 0.0;
   std::vector<std::string> warnings;  // of the adjustment
-
-  double MedianMarkerSigma_mm() const;
 };
 
 // Draws by `options.seed` which markers are found and the errors of their corners. Throws DataError

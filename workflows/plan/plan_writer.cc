@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/shape_sigma.h"
 #include "importer/base/statistics.h"
 #include "importer/text/csv.h"
 #include "importer/text/write_formatted.h"
@@ -25,8 +26,8 @@ std::string PrecisionText(const PlannedVariant& variant) {
   if (!variant.precision) return "no shape: " + variant.failure;
   const PlanPrecision& precision = *variant.precision;
   return fmt::format("{:>9} {:>11.2g} {:>9.2g} {:>9.3f}", precision.marker_sigma_mm.size(),
-                     precision.MedianMarkerSigma_mm(), precision.distance_after_scaling_sigma_mm,
-                     100 * precision.scale_sigma);
+                     MedianSigma(precision.marker_sigma_mm),
+                     precision.distance_after_scaling_sigma_mm, 100 * precision.scale_sigma);
 }
 
 void PrintFacts(const ShootPlan& plan, std::ostream& out) {
@@ -46,7 +47,7 @@ void PrintFacts(const ShootPlan& plan, std::ostream& out) {
   const PlanPrecision& precision = *plan.plan().precision;
   WriteFormatted(out, "markers_reconstructed: {}\n", precision.marker_sigma_mm.size());
   WriteFormatted(out, "marker_sigma_mm: {:.2g} (median, size included)\n",
-                 precision.MedianMarkerSigma_mm());
+                 MedianSigma(precision.marker_sigma_mm));
   WriteFormatted(out, "distance_sigma_mm: {:.2g}\ndistance_after_scaling_sigma_mm: {:.2g}\n",
                  precision.distance_sigma_mm, precision.distance_after_scaling_sigma_mm);
   WriteFormatted(out, "scale_sigma_percent: {:.3f}\n", 100 * precision.scale_sigma);
@@ -137,7 +138,7 @@ void WritePlanCsv(const ShootPlan& plan, std::ostream& out) {
   for (const PlannedVariant& variant : plan.variants) {
     std::optional<double> marker, distance, shape, scale;
     if (variant.precision) {
-      marker = variant.precision->MedianMarkerSigma_mm();
+      marker = MedianSigma(variant.precision->marker_sigma_mm);
       distance = variant.precision->distance_sigma_mm;
       shape = variant.precision->distance_after_scaling_sigma_mm;
       scale = 100 * variant.precision->scale_sigma;

@@ -28,8 +28,8 @@ TEST(MarkerSides, AreThoseOfTheShapeInAnyFrame) {
   TransformModel(ExampleSim3(2.0), &model);
   const auto markers = MeasureSides(model, ExampleLayout());
   ASSERT_EQ(markers.size(), 8u);
-  EXPECT_NEAR(markers[0].Mean(), 0.2, 1e-12);
-  EXPECT_NEAR(markers[7].Mean(), 0.1, 1e-12);
+  EXPECT_NEAR(MeanSide(markers[0].sides), 0.2, 1e-12);
+  EXPECT_NEAR(MeanSide(markers[7].sides), 0.1, 1e-12);
   EXPECT_NEAR(markers[3].HorizontalOverVertical(), 1.0, 1e-12);
   EXPECT_EQ(markers[3].part, "sail");
   EXPECT_LT(*markers[3].mean_sigma, 1e-9);  // exact image points
@@ -85,7 +85,7 @@ TEST(MarkerSides, PointsThatOneImageSeesStay) {
   model.points3D.at(12).x_in_world.x() += 0.01;
   IntersectCorners(0.0, &model);
   EXPECT_EQ(model.points3D.at(11).x_in_world, before);
-  EXPECT_NEAR(MeasureSides(model, ExampleLayout())[0].Mean(), 0.1, 1e-9);
+  EXPECT_NEAR(MeanSide(MeasureSides(model, ExampleLayout())[0].sides), 0.1, 1e-9);
   EXPECT_FALSE(MeasureSides(model, ExampleLayout())[0].mean_sigma.has_value());
 }
 
@@ -109,10 +109,10 @@ TEST(MarkerSides, ApparentInsetIsTakenOut) {
   Model seen = model;
   IntersectCorners(0.0, &seen);
   const auto too_small = MeasureSides(seen, ExampleLayout());
-  EXPECT_NEAR(too_small[6].Mean() / 0.1, 1 - 2 * kInset_px / *too_small[6].side_px, 5e-4);
+  EXPECT_NEAR(MeanSide(too_small[6].sides) / 0.1, 1 - 2 * kInset_px / *too_small[6].side_px, 5e-4);
   IntersectCorners(kInset_px, &model);
   for (const MeasuredMarkerSides& marker : MeasureSides(model, ExampleLayout())) {
-    EXPECT_NEAR(marker.Mean(), MarkerLength(ExampleLayout(), marker.marker_id), 1e-6);
+    EXPECT_NEAR(MeanSide(marker.sides), MarkerLength(ExampleLayout(), marker.marker_id), 1e-6);
   }
 }
 
@@ -125,7 +125,7 @@ TEST(MarkerSides, SigmasAreCalibrated) {
     AddNormalNoise(0.1, &random, &model);
     IntersectCorners(0.0, &model);
     const MeasuredMarkerSides marker = MeasureSides(model, ExampleLayout())[4];
-    means.push_back(marker.Mean() / 0.1 - 1);
+    means.push_back(MeanSide(marker.sides) / 0.1 - 1);
     ratios.push_back(marker.HorizontalOverVertical() - 1);
     mean_sigmas.push_back(*marker.mean_sigma);
     ratio_sigmas.push_back(*marker.ratio_sigma);

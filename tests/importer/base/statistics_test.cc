@@ -77,5 +77,13 @@ TEST(Rms, IsTheRootOfTheMeanSquare) {
   EXPECT_EQ(Rms({}), 0);
 }
 
+TEST(Thinned, KeepsAFewEvenlyOverTheList) {
+  const std::vector<int> items = {0, 1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(Thinned(items, 3), (std::vector<int>{0, 2, 4}));
+  EXPECT_EQ(Thinned(items, 7), items);
+  EXPECT_EQ(Thinned(items, 8), items);
+  EXPECT_TRUE(Thinned(items, 0).empty());
+}
+
 }  // namespace
 }  // namespace velamap

@@ -41,6 +41,13 @@ struct FakeEstimator {
   }
 };
 
+// The tens of the distance from 300 are the inliers, which settle long before the cost does.
+struct SettlingEstimator : FakeEstimator {
+  bool HasSameInliers(const NumberHypothesis& a, const NumberHypothesis& b) const {
+    return std::floor(a.cost / 10) == std::floor(b.cost / 10);
+  }
+};
+
 TEST(Ransac, DrawsAsManySamplesAsTheInlierRatioNeeds) {
   const std::pair<double, int> expected[] = {
       {1.0, 12}, {0.9, 16}, {0.5, 156}, {0.2, 160}, {0, 160}};
@@ -93,6 +100,34 @@ TEST(RefineHypothesis, GoesOnWhileTheCostFalls) {
   // 308, 304, 302, 301; the next one costs more.
   EXPECT_EQ(RefineHypothesis(estimator, 100, estimator.Score(308)).value, 301);
   EXPECT_EQ(estimator.num_refinements, 2 + 4);
+}
+
+TEST(RefineHypothesis, EndsWhereTheInliersHaveSettled) {
+  const SettlingEstimator estimator;
+  // 340, 320, 310, 305, 302.5; the last step changes no inlier.
+  EXPECT_EQ(RefineHypothesis(estimator, 100, estimator.Score(340)).value, 302.5);
+  EXPECT_EQ(estimator.num_refinements, 4);
+  EXPECT_EQ(RefineHypothesis(estimator, 100, estimator.Score(308)).value, 304);
+  EXPECT_EQ(estimator.num_refinements, 4 + 1);
+}
+
+TEST(DistinctHypotheses, KeepsTheBestOfThoseThatAreNearlyTheSame) {
+  const auto is_same = [](const NumberHypothesis& a, const NumberHypothesis& b) {
+    return std::abs(a.value - b.value) < 0.5;
+  };
+  const std::vector<NumberHypothesis> hypotheses = {{10.1, 4}, {1.4, 2}, {5.0, 2}, {1.0, 1},
+                                                    {1.8, 3},  {5.0, 9}, {10.0, 4}};
+  const auto values = [&](std::size_t max_count) {
+    std::vector<double> kept;
+    for (const NumberHypothesis& hypothesis : DistinctHypotheses(hypotheses, is_same, max_count)) {
+      kept.push_back(hypothesis.value);
+    }
+    return kept;
+  };
+  // 1.4 is left out and therefore leaves 1.8 in; of equal costs, the first one counts.
+  EXPECT_EQ(values(10), (std::vector<double>{1.0, 5.0, 1.8, 10.1}));
+  EXPECT_EQ(values(2), (std::vector<double>{1.0, 5.0}));
+  EXPECT_TRUE(values(0).empty());
 }
 
 TEST(RandomIndex, CoversTheRangeEvenly) {

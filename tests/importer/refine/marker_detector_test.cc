@@ -7,6 +7,7 @@
 
 #include "importer/dictionary_hint.h"
 #include "tests/importer/marker_builders.h"
+#include "tests/support/detect_markers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -4,11 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "importer/base/error.h"
 #include "importer/detect/marker_search.h"
-#include "importer/detect/search_regions.h"
-#include "importer/frame_pipeline.h"
-#include "importer/frame_turns.h"
 #include "importer/track/line_expectation.h"
 
 namespace velamap {
@@ -206,61 +202,6 @@ TEST(SearchTracked, AFalseMarkerIsSoonForgotten) {
   video.hidden = {77};
   for (int i = 0; i < 10; ++i) video.Next();
   EXPECT_EQ(video.tracks.tracks.size(), 12u);
-}
-
-TEST(MergeRegions, CoversTheSameAndCostsNoMore) {
-  const std::vector<cv::Rect> regions = {{0, 0, 100, 100},
-                                         {50, 0, 100, 100},
-                                         {0, 800, 100, 100},
-                                         {500, 500, 30, 30},
-                                         {535, 500, 30, 30}};
-  const std::vector<cv::Rect> merged = MergeRegions(regions);
-  EXPECT_EQ(merged.size(), 3u);
-  for (const cv::Rect& region : regions) {
-    EXPECT_TRUE(std::any_of(merged.begin(), merged.end(),
-                            [&](const cv::Rect& rect) { return (rect & region) == region; }));
-  }
-}
-
-class TurnSource : public FrameSource {
- public:
-  std::optional<Frame> Next() override {
-    return num_read_++ < 200 ? std::optional<Frame>(Frame()) : std::nullopt;
-  }
-  bool Load(Frame*, std::string*) const override { return true; }
-  bool IsVideo() const override { return true; }
-  int NumFrames() const override { return 200; }
-
- private:
-  int num_read_ = 0;
-};
-
-TEST(FrameTurns, TurnsComeInOrderWhateverHappensToAFrame) {
-  for (const bool fails : {false, true}) {
-    FrameTurns<std::vector<int>> turns;
-    std::vector<int> order;
-    TurnSource source;
-    const auto run = [&] {
-      RunFramePipeline(
-          &source, 4,
-          [&](int frame_idx, Frame*) {
-            FrameTurns<std::vector<int>>::Turn turn(&turns, frame_idx);
-            if (frame_idx % 7 == 3) return FrameResult();  // a frame that is skipped
-            if (fails && frame_idx == 50) throw InputError("bad");
-            turn.Wait()->push_back(frame_idx);
-            order = *turn.Wait();
-            return FrameResult();
-          },
-          [](int, const FrameResult&) {});
-    };
-    if (fails) {
-      EXPECT_THROW(run(), InputError);
-    } else {
-      run();
-      EXPECT_EQ(order.size(), 171u);
-    }
-    EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
-  }
 }
 
 }  // namespace

@@ -89,18 +89,21 @@ TEST(ResectFrame, SeedDecidesNothingThatMatters) {
   }
 }
 
-TEST(ResectFrame, ErrorsAreAsLargeAsTheNoiseExplains) {
+// map_refinement_test.cc checks how good that is.
+TEST(ResectFrame, ThePoseIsTheRefinedOne) {
   const SceneMap map = NoisySail(0.4, TestSeed());
   const MapSolution truth = map.TrueSolution();
-  double sum = 0.0;
   for (int frame_idx = 0; frame_idx < 15; ++frame_idx) {
-    const auto hypotheses = ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed());
-    const Eigen::Matrix<double, 6, 1> error =
-        StepBetween(*truth.Pose(frame_idx), hypotheses.front().cam_from_shape);
-    sum += error.dot(PoseInformation(map.problem, truth, frame_idx) * error);
+    const auto best = ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed()).front();
+    EXPECT_EQ(best.observation_idxs, map.problem.Frame(frame_idx).observation_idxs);
+    std::vector<PlacedObservation> placed;
+    for (const int idx : best.observation_idxs) {
+      const MapObservation& observation = map.problem.Observation(idx);
+      placed.push_back({&observation, &truth.Places(observation.marker_idx).front()});
+    }
+    const Rigid3 refined = RefineFramePose(map.problem, placed, *truth.Pose(frame_idx));
+    EXPECT_LT(StepBetween(refined, best.cam_from_shape).norm(), 1e-5);
   }
-  // Chi-square with 6 degrees of freedom a frame: the mean of 15 is 6 with a sigma of 0.9.
-  EXPECT_NEAR(sum / 15, 6.0, 3.2);
 }
 
 TEST(ResectFrame, FalseIdsAndTurnedCornersAreLeftOut) {

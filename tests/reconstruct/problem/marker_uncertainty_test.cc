@@ -1,7 +1,6 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <random>
 #include <string>
@@ -13,27 +12,12 @@
 
 #include "importer/geometry/alignment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/problem/error_correlation.h"
 #include "tests/reconstruct/dense_covariance.h"
+#include "tests/reconstruct/problem/tiny_scene.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
 namespace {
-
-MarkerWeights WeightsWithoutLoss() {
-  MarkerWeights weights;
-  weights.loss_sigmas = std::numeric_limits<double>::infinity();
-  weights.print_tolerance = 1e-3;
-  return weights;
-}
-
-SyntheticScene TinyScene() {
-  SyntheticSceneOptions options;
-  options.num_rows = 2;
-  options.num_columns = 3;
-  options.num_frames = 6;
-  return MakeSyntheticScene(options);
-}
 
 Eigen::MatrixXd DenseJacobian(const MarkerProblem& problem) {
   ceres::Problem::EvaluateOptions options;
@@ -128,76 +112,6 @@ TEST(CornerRedundancy, IsWhatTheDenseHatMatrixLeaves) {
   const MarkerJacobian jacobian = EvaluateJacobian(problem);
   EXPECT_NEAR(CornerRedundancy(jacobian, *InvertNormalEquations(jacobian, 1)),
               static_cast<double>(num_corners) - leverages.head(num_corners).sum(), 1e-6);
-}
-
-TEST(GroupImages, NeighboursInTimeShareAGroupWithoutLeadingZeros) {
-  Model model;
-  model.cameras[1] = {CameraModel::kSimplePinhole, 640, 480, {500, 320, 240}};
-  for (int number = 10; number >= 1; --number) {
-    ModelImage image;
-    image.image_id = static_cast<ImageId>(number);
-    image.camera_id = 1;
-    image.name = "frame_" + std::to_string(number) + ".png";
-    model.images.push_back(image);
-  }
-  EXPECT_EQ(GroupImages(model, kNumCorrelationGroups),
-            (std::vector<int>{4, 4, 3, 3, 2, 2, 1, 1, 0, 0}));
-}
-
-// Enough images for several panels of columns.
-TEST(MarkerCovariance, IsTheSameForAnyNumberOfThreads) {
-  SyntheticSceneOptions scene_options;
-  scene_options.num_rows = 2;
-  scene_options.num_columns = 4;
-  scene_options.num_frames = 30;
-  SyntheticScene scene = MakeSyntheticScene(scene_options);
-  AddNoise({0.2, 0, 0, 5, 1}, &scene);
-  const Model model = MakeSceneModel(scene);
-  MarkerState state = MakeMarkerState(model, scene.layout);
-  const MarkerWeights weights = WeightsWithoutLoss();
-  const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
-  const std::vector<int> groups = GroupImages(model, kNumCorrelationGroups);
-  const MarkerJacobian jacobian = EvaluateJacobian(problem);
-  const auto covariance = InvertNormalEquations(jacobian, 1);
-  ASSERT_TRUE(covariance.has_value());
-  const double factor = CorrelationFactor(state, problem, jacobian, *covariance, groups, 1);
-  for (const int num_threads : {2, 5}) {
-    const auto other = InvertNormalEquations(jacobian, num_threads);
-    ASSERT_TRUE(other.has_value());
-    EXPECT_EQ(other->factor, covariance->factor);
-    EXPECT_EQ(other->root, covariance->root);
-    EXPECT_EQ(other->marker_blocks, covariance->marker_blocks);
-    EXPECT_EQ(CorrelationFactor(state, problem, jacobian, *other, groups, num_threads), factor);
-  }
-}
-
-// Central differences of the length.
-TEST(BarGradient, IsTheDerivativeOfTheLength) {
-  SyntheticScene scene = TinyScene();
-  scene.layout.distances = {{0, 0, 5, 1, 0.6, 1e-3, true}};
-  MarkerState state = MakeMarkerState(MakeSceneModel(scene), scene.layout);
-  const ScaleBar bar = FindScaleBars(state, scene.layout.distances).at(0);
-  const Eigen::VectorXd gradient = BarGradient(bar, state);
-  const auto length = [&] {
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    for (int slot = 0; slot < kNumCorners; ++slot) {
-      center += CornerPosition(state.markers.at(0), slot) / kNumCorners;
-    }
-    return (CornerPosition(state.markers.at(5), 0) - center).norm();
-  };
-  constexpr double kStep = 1e-6;
-  Eigen::Index column = 0;
-  for (MarkerBlock& marker : state.markers) {
-    for (double& x : marker.x_in_world) {
-      const double before = x;
-      x = before + kStep;
-      const double above = length();
-      x = before - kStep;
-      const double below = length();
-      x = before;
-      EXPECT_NEAR(gradient[column++], (above - below) / (2 * kStep), 1e-8);
-    }
-  }
 }
 
 // Repetitions with everything at random that the sigmas claim to know: corner noise, printed sides,

@@ -96,9 +96,8 @@ TEST(FrameSelection, HugeOptionsReachAllFrames) {
        {ThesisRegistrationOptions{kHuge, kHuge, kHuge}, ThesisRegistrationOptions{kHuge, 1, kHuge},
         ThesisRegistrationOptions{kHuge, 1, 1}, ThesisRegistrationOptions{100000, 100000, 5}}) {
     EXPECT_EQ(ReachableFrames(60, search), std::make_pair(0, kHuge));
-    const int central_idx = ChooseCentralVideoFrame(frames, search).frame_idx;
-    EXPECT_GE(central_idx, 0);
-    EXPECT_LT(central_idx, 5);
+    // All frames are equally good.
+    EXPECT_EQ(ChooseCentralVideoFrame(frames, search).frame_idx, 0);
     EXPECT_LE(Search(frames, 2, search, scene.layout).size(), 4u);
   }
   EXPECT_EQ(Search(frames, 2, {kHuge, 1, 0}, scene.layout).size(), 4u);

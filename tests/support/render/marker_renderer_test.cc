@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "importer/refine/marker_detector.h"
+#include "tests/support/detect_markers.h"
 
 namespace velamap {
 namespace {

@@ -40,18 +40,50 @@ struct Spoilt {
   std::function<void(ClipFacts*)> spoil;
 };
 
-TEST(ClipVerdict, EachFaultIsNamedByItself) {
-  const std::vector<Spoilt> cases = {
-      {"no marker is seen", ReportStatus::kBad,
-       [](ClipFacts* facts) {
-         *facts = {};
-         facts->num_frames_read = 40;
-       }},
-      {"name the dictionary", ReportStatus::kBad,
-       [](ClipFacts* facts) {
-         facts->num_markers_found = 30;
-         facts->num_markers_of_second = 20;
-       }},
+std::vector<Spoilt> SpoiltPictures() {
+  return {{"no marker is seen", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             *facts = {};
+             facts->num_frames_read = 40;
+           }},
+          {"name the dictionary", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->num_markers_found = 30;
+             facts->num_markers_of_second = 20;
+           }},
+          {"never seen: 21-23 25", ReportStatus::kCheck,
+           [](ClipFacts* facts) {
+             facts->ids_never_seen = {21, 22, 23, 25};
+           }},
+          {"61 of 81 markers of the layout are never seen: the layout or the dictionary",
+           ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             for (int id = 20; id < 81; ++id) facts->ids_never_seen.push_back(id);
+           }},
+          {"25 markers are found only in the mirrored image", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             for (int id = 20; id < 45; ++id) facts->ids_mirrored.push_back(id);
+           }},
+          {"seen in fewer than 3 of 40 frames: 7", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->num_frames_of_id[7] = 2; }},
+          {"not in the layout: 99", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->ids_not_in_layout = {99}; }},
+          {"smaller than 16 px", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->side_px = ComputeStatistics({16}); }},
+          {"smaller than 9 px", ReportStatus::kBad,
+           [](ClipFacts* facts) { facts->side_px = ComputeStatistics({9}); }},
+          {"overexposed", ReportStatus::kCheck, [](ClipFacts* facts) { facts->white = 254; }},
+          {"differ by 40", ReportStatus::kCheck, [](ClipFacts* facts) { facts->black = 170; }},
+          {"shorter shutter", ReportStatus::kCheck, [](ClipFacts* facts) { facts->motion_px = 6; }},
+          {"focus", ReportStatus::kCheck, [](ClipFacts* facts) { facts->blur_px = 2.5; }},
+          {"50 % of the frames", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->num_frames_with_few_markers = 20; }},
+          {"3 of 43 frames looked at are damaged", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->num_frames_damaged = 3; }}};
+}
+
+std::vector<Spoilt> SpoiltPrecision() {
+  return {
       {"the principal point wanders by 20 px", ReportStatus::kBad,
        [](ClipFacts* facts) {
          facts->precision->steadiness.wander = PrincipalPointWander{20, 960};
@@ -68,35 +100,6 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) {
          facts->precision->steadiness.step = FocalStep{"b.jpg", 1, 960, 982, 30};
        }},
-      {"never seen: 21-23 25", ReportStatus::kCheck,
-       [](ClipFacts* facts) {
-         facts->ids_never_seen = {21, 22, 23, 25};
-       }},
-      {"61 of 81 markers of the layout are never seen: the layout or the dictionary",
-       ReportStatus::kBad,
-       [](ClipFacts* facts) {
-         for (int id = 20; id < 81; ++id) facts->ids_never_seen.push_back(id);
-       }},
-      {"25 markers are found only in the mirrored image", ReportStatus::kBad,
-       [](ClipFacts* facts) {
-         for (int id = 20; id < 45; ++id) facts->ids_mirrored.push_back(id);
-       }},
-      {"seen in fewer than 3 of 40 frames: 7", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->num_frames_of_id[7] = 2; }},
-      {"not in the layout: 99", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->ids_not_in_layout = {99}; }},
-      {"smaller than 16 px", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->side_px = ComputeStatistics({16}); }},
-      {"smaller than 9 px", ReportStatus::kBad,
-       [](ClipFacts* facts) { facts->side_px = ComputeStatistics({9}); }},
-      {"overexposed", ReportStatus::kCheck, [](ClipFacts* facts) { facts->white = 254; }},
-      {"differ by 40", ReportStatus::kCheck, [](ClipFacts* facts) { facts->black = 170; }},
-      {"shorter shutter", ReportStatus::kCheck, [](ClipFacts* facts) { facts->motion_px = 6; }},
-      {"focus", ReportStatus::kCheck, [](ClipFacts* facts) { facts->blur_px = 2.5; }},
-      {"50 % of the frames", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->num_frames_with_few_markers = 20; }},
-      {"3 of 43 frames looked at are damaged", ReportStatus::kCheck,
-       [](ClipFacts* facts) { facts->num_frames_damaged = 3; }},
       {"moves 15 degrees", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->parallax_deg = 15; }},
       {"moves 5 degrees", ReportStatus::kBad,
@@ -119,6 +122,11 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
          facts->precision.reset();
          facts->no_precision_because = "because";
        }}};
+}
+
+TEST(ClipVerdict, EachFaultIsNamedByItself) {
+  std::vector<Spoilt> cases = SpoiltPictures();
+  for (const Spoilt& spoilt : SpoiltPrecision()) cases.push_back(spoilt);
   for (const Spoilt& spoilt : cases) {
     ClipFacts facts = GoodClip();
     spoilt.spoil(&facts);

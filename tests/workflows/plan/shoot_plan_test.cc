@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 #include "tests/support/error_matchers.h"
@@ -95,7 +96,7 @@ TEST(ShootPlanTest, ChoosesADistanceAndSaysWhatItGives) {
   const ShootPlan plan = MakeShootPlan(PlannedSail(), LinearCamera(), options);
   EXPECT_GT(plan.along_path.found_share, 0.8);
   ASSERT_TRUE(plan.plan().precision);
-  EXPECT_GT(plan.plan().precision->MedianMarkerSigma_mm(), 0.1);
+  EXPECT_GT(MedianSigma(plan.plan().precision->marker_sigma_mm), 0.1);
   EXPECT_LT(plan.shutters[1].motion_px_s, plan.shutters[0].motion_px_s);
   EXPECT_GT(plan.shutters[1].exposure_s, plan.shutters[2].exposure_s);
   std::ostringstream out, csv, markers, again;

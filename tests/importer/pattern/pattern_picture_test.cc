@@ -1,52 +1,15 @@
-// The models that the fits of corners compare with pixels: edge_fit.h and pattern_picture.h.
+#include "importer/pattern/pattern_picture.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "importer/lanes/float_lanes.h"
-#include "importer/pattern/pattern_picture.h"
-#include "importer/refine/edge_fit.h"
+#include "tests/importer/lane_derivatives.h"
 #include "tests/importer/refine/marker_grid.h"
 
 namespace velamap {
 namespace {
-
-// Whether `jacobian`, a group of observations, agrees with what `value` changes by.
-template <typename Vector, typename Jacobian, typename Value>
-void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jacobian& jacobian,
-                       const Value& value, double relative_tolerance, double tolerance) {
-  for (int i = 0; i < parameters.size(); ++i) {
-    Vector above = parameters, below = parameters;
-    above[i] += steps[i];
-    below[i] -= steps[i];
-    const Floats difference = (value(above) - value(below)) / static_cast<float>(2 * steps[i]);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      EXPECT_NEAR(jacobian[static_cast<std::size_t>(i)][lane], difference[lane],
-                  relative_tolerance * std::abs(difference[lane]) + tolerance)
-          << "parameter " << i << ", lane " << lane;
-    }
-  }
-}
-
-TEST(EvaluateEdge, DerivativesAgreeWithDifferences) {
-  EdgeParameters parameters;
-  parameters.values << 0.2, -0.1, 0.15, 0.9, 40, 180, 5, -7, 0.8, 1.1;
-  const EdgeSampleGroup samples{
-      AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f, -1.2f, 0.0f, 0.8f, 2.3f},
-      AllLanes(100), AllLanes(0.9),
-      AllLanes(120), AllLanes(-110),
-      AllLanes(2.2), AllLanes(2.4)};
-  EdgeEquations::Jacobian jacobian;
-  EvaluateEdge(parameters, samples, &jacobian);
-  const auto value = [&](const EdgeParameters::Vector& values) {
-    EdgeEquations::Jacobian unused;
-    return EvaluateEdge(EdgeParameters{values}, samples, &unused);
-  };
-  ExpectDerivatives<EdgeParameters::Vector>(
-      parameters.values, EdgeParameters::Vector::Constant(0.01), jacobian, value, 0.002, 0.05);
-}
 
 // The share of a single corner is an approximation; all four together move the picture as it is.
 TEST(PatternPicture, DerivativesAgreeWithDifferences) {
