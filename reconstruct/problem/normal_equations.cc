@@ -94,25 +94,26 @@ NormalMatrix SumProducts(const MarkerJacobian& jacobian, int num_threads) {
 }
 
 // The lower root of the matrix that the global parameters have once the markers are eliminated.
-// Nothing where the markers leave one of them undetermined.
-std::optional<Eigen::MatrixXd> RootOfGlobals(const Eigen::MatrixXd& globals,
-                                             const RowMajorMatrix& factor, int num_threads) {
-  Eigen::MatrixXd schur = globals;
-  ForEachPanel(schur.cols(), num_threads, [&](Eigen::Index begin, Eigen::Index width) {
-    const Eigen::Index height = schur.rows() - begin;
-    schur.block(begin, begin, height, width).noalias() -=
+// Nothing where the markers leave one of them undetermined. Works in place: thousands of images
+// make matrices of gigabytes.
+std::optional<Eigen::MatrixXd> RootOfGlobals(Eigen::MatrixXd globals, const RowMajorMatrix& factor,
+                                             int num_threads) {
+  const Eigen::VectorXd information = globals.diagonal();
+  ForEachPanel(globals.cols(), num_threads, [&](Eigen::Index begin, Eigen::Index width) {
+    const Eigen::Index height = globals.rows() - begin;
+    globals.block(begin, begin, height, width).noalias() -=
         factor.rightCols(height).transpose() * factor.middleCols(begin, width);
   });
-  const Eigen::LLT<Eigen::MatrixXd> decomposition(schur.selfadjointView<Eigen::Lower>());
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> decomposition(globals);
   if (decomposition.info() != Eigen::Success) return std::nullopt;
-  Eigen::MatrixXd root = decomposition.matrixL();
   // A global parameter is undetermined if the markers absorb all of it except for rounding errors.
   constexpr double kMinShareOfInformation = 1e-14;
-  for (Eigen::Index i = 0; i < schur.rows(); ++i) {
-    const double left = root(i, i) * root(i, i);
-    if (!(left > kMinShareOfInformation * globals(i, i))) return std::nullopt;
+  for (Eigen::Index i = 0; i < globals.rows(); ++i) {
+    const double left = globals(i, i) * globals(i, i);
+    if (!(left > kMinShareOfInformation * information[i])) return std::nullopt;
   }
-  return root;
+  globals.triangularView<Eigen::StrictlyUpper>().setZero();
+  return globals;
 }
 
 }  // namespace
@@ -177,7 +178,7 @@ std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jaco
   });
   if (!is_definite) return std::nullopt;
 
-  auto root = RootOfGlobals(normal.globals, factor, num_threads);
+  auto root = RootOfGlobals(std::move(normal.globals), factor, num_threads);
   if (!root) return std::nullopt;
   covariance.root = *std::move(root);
 

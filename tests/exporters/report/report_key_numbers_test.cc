@@ -138,6 +138,31 @@ TEST_F(ReportKeyNumbers, PartsThatDisagreeLeaveTheScaleOpen) {
   EXPECT_EQ(scale().status, ReportStatus::kCheck);
 }
 
+TEST_F(ReportKeyNumbers, AModelAdjustedWithOtherMarkerLengthsIsBad) {
+  ScaleAudit audit;
+  audit.deviation = -0.009;
+  audit.deviation_sigma = 1e-4;
+  example_.scale.relative_sigma = 0.0011;
+  AdjustmentUncertainty uncertainty;
+  ReportInput input = example_.Input();
+  input.audit = &audit;
+  input.uncertainty = &uncertainty;
+  const auto scale = [&input] { return FindIn(input, KeyNumberKind::kScale).value(); };
+  EXPECT_EQ(scale().status, ReportStatus::kBad);
+  EXPECT_THAT(scale().advice, HasSubstr("0.90 % larger than the layout says (8 sigmas)"));
+  EXPECT_THAT(scale().advice, HasSubstr("adjust it again with this layout"));
+  // A distance that the adjustment used explains it.
+  audit.distances = {{{1, 0, 3, 0, 3.0, 1e-3, true}, 3.001, 1e-3}};
+  EXPECT_EQ(scale().status, ReportStatus::kGood);
+  audit.distances.clear();
+  audit.deviation = -0.003;
+  EXPECT_EQ(scale().status, ReportStatus::kGood);
+  // Without an uncertainty, the markers of this layout have given the scale.
+  audit.deviation = -0.009;
+  input.uncertainty = nullptr;
+  EXPECT_EQ(scale().status, ReportStatus::kGood);
+}
+
 TEST_F(ReportKeyNumbers, AScaleThatIsHardlyKnownIsNotGood) {
   example_.scale.relative_spread = 0.0;
   example_.scale.relative_sigma = 0.0049;
