@@ -263,5 +263,26 @@ TEST(CameraSearch, ErrorsNeitherDoubtNorAskForACalibration) {
   }
 }
 
+// The user names the central frame for the registration after the search. One that a bad start
+// cannot register is an InputError there, which would end the search.
+TEST(CameraSearch, ACentralFrameThatCannotBeRegisteredDoesNotEndTheSearch) {
+  const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
+  SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
+  // Nothing in this frame is where it is in the others.
+  auto& markers = scene.frames[8].markers;
+  for (std::size_t i = 0; i + 1 < markers.size(); i += 2) {
+    std::swap(markers[i].corners_in_image_px, markers[i + 1].corners_in_image_px);
+  }
+  const std::vector<DatabaseImage> images = DatabaseImages(scene);
+  RegistrationOptions registration;
+  registration.central_frame = "8";
+  ASSERT_THROW(RegisterFrames(images, {{1, truth}}, scene.layout, registration), InputError);
+  MarkerAdjustmentOptions adjustment;
+  adjustment.find_camera = true;
+  const auto found = FindCameras(images, {{1, UnknownCamera(1920, 1080)}}, scene.layout,
+                                 CornerErrorsOf(images), registration, adjustment);
+  EXPECT_NEAR(MeanFocalLength(found.at(1)) / 1500, 1.0, 0.01);
+}
+
 }  // namespace
 }  // namespace velamap

@@ -3,7 +3,9 @@ velamap_test(NAME reconstruct_camera_test LABEL unit
   SOURCES
     camera_calibration_test.cc
     camera_search_test.cc
+    adjust/camera_adjustment_test.cc
     adjust/camera_cross_validation_test.cc
+    adjust/found_cameras_test.cc
     camera/camera_steadiness_test.cc
     camera/focal_evidence_test.cc
     model/turned_model_test.cc

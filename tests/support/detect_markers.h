@@ -15,8 +15,8 @@ namespace velamap {
 inline std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                                   int border_bits,
                                                   const ArucoDetectionOptions& options) {
-  return RefineMarkers(gray, SearchMarkers(gray, dictionary, border_bits, options), dictionary,
-                       border_bits, options);
+  const std::vector<MarkerQuad> quads = SearchMarkers(gray, dictionary, border_bits, options);
+  return RefineMarkers(gray, quads, dictionary, border_bits, options);
 }
 
 }  // namespace velamap

@@ -102,5 +102,12 @@ TEST(RobustFit, WhatIsNotDeterminedHasNoFit) {
   EXPECT_FALSE(FitRobustly(wide, Eigen::VectorXd::Ones(2), Eigen::VectorXd::Zero(2)).has_value());
 }
 
+// Of few values, the fit follows some.
+TEST(RobustFit, TheScatterOfFewValuesIsNotTakenTooSmall) {
+  const RobustMean mean = FitMeanRobustly({-2, -1, 0, 1, 2}, std::vector<double>(5, 0.0));
+  EXPECT_NEAR(mean.mean, 0.0, 1e-6);
+  EXPECT_NEAR(mean.excess_sigma, 1.4826 * std::sqrt(5.0 / 4.0), 1e-3);
+}
+
 }  // namespace
 }  // namespace velamap

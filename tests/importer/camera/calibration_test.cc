@@ -145,5 +145,21 @@ TEST(ScaleToImageSize, AcceptsRoundedAndRefusesOtherSizes) {
                            {"c.yml", "1920x1080", "300x1080", "the aspect ratio differs"});
 }
 
+TEST(ScaleToImageSize, RoundedSizesScaleOneFocalLengthByTheMeanOfBothAxes) {
+  const Camera camera{CameraModel::kSimplePinhole, 1920, 1080, {1400, 960, 540}};
+  const Camera scaled = ScaleToImageSize(camera, 854, 480, "c.yml");
+  EXPECT_NEAR(scaled.params[0], 1400 * (854.0 / 1920 + 480.0 / 1080) / 2, 1e-9);
+  EXPECT_NEAR(scaled.params[1], 427, 1e-9);
+  EXPECT_NEAR(scaled.params[2], 240, 1e-9);
+}
+
+TEST(ScaleToImageSize, RefusesSizesThatNoRoundingExplains) {
+  const Camera camera{CameraModel::kSimplePinhole, 1920, 1080, {1400, 960, 540}};
+  for (const int width_px : {851, 856}) {
+    ExpectThrows<InputError>([&] { ScaleToImageSize(camera, width_px, 480, "c.yml"); },
+                             {"c.yml", "the aspect ratio differs"});
+  }
+}
+
 }  // namespace
 }  // namespace velamap

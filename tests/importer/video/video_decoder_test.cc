@@ -196,5 +196,21 @@ TEST(VideoDecoder, TimesDoNotRunBackwardsBehindACut) {
   }
 }
 
+// Every third frame was dropped, as phones do in bad light: the nominal rate stays 25 per second.
+TEST(VideoDecoder, ANumberOfFramesThatIsNotStatedFollowsFromTheMeanRate) {
+  const TempDir dir;
+  const std::string stated = dir / "stated.mp4", unstated = dir / "unstated.flv";
+  ASSERT_NO_FATAL_FAILURE(
+      MakeGreyClip(stated,
+                   "-vf 'select=mod(n\\,3),hue=s=0,format=yuv420p' -vsync passthrough "
+                   "-enc_time_base 1:1000 -c:v libx264 -g 12"));
+  const std::string command =
+      fmt::format("ffmpeg -loglevel error -y -i '{}' -c copy '{}'", stated, unstated);
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  EXPECT_EQ(VideoDecoder(stated, 1).NumContainerFrames(), kNumClipFrames);
+  // The nominal rate would give half as many again.
+  EXPECT_NEAR(VideoDecoder(unstated, 1).NumContainerFrames(), kNumClipFrames, 3);
+}
+
 }  // namespace
 }  // namespace velamap

@@ -119,5 +119,18 @@ TEST(FocalEvidence, ResultDoesNotDependOnThreads) {
   EXPECT_EQ(one.log_sigma, two.log_sigma);
 }
 
+// With few squares, small errors may be chance.
+TEST(FocalEvidence, AFewSquaresAreNoBetterThanTheirSigmas) {
+  std::mt19937 generator(6);
+  const Camera camera = Lens(CameraModel::kSimpleRadial, 1500);
+  std::vector<SquareView> views = Draw(camera, 7, 1.0, 0.0, &generator);
+  for (SquareView& view : views) view.sigma_px = 0.3;
+  const double few = FindFocalLength(CameraModel::kSimpleRadial, 1920, 1080, views).log_sigma;
+  const std::vector<SquareView> more = Draw(camera, 1, 1.0, 0.0, &generator);
+  views.insert(views.end(), more.begin(), more.end());
+  views.back().sigma_px = 0.3;
+  EXPECT_LT(FindFocalLength(CameraModel::kSimpleRadial, 1920, 1080, views).log_sigma, 0.5 * few);
+}
+
 }  // namespace
 }  // namespace velamap

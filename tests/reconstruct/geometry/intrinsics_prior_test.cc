@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace velamap {
@@ -108,6 +109,16 @@ TEST(IntrinsicsPrior, WithinIsJudgedByTheImageAndNotByTheSizeOfCoefficients) {
   moved = camera;
   moved.params[0] *= 1.02;
   EXPECT_FALSE(IsWithin(prior, moved));
+}
+
+TEST(IntrinsicsPrior, OfAnUnknownCameraKnowsTheMiddleOfThePicture) {
+  const Camera camera{CameraModel::kOpenCV, 1920, 1080, {1400, 1410, 900, 500, 0.1, 0, 0, 0}};
+  const IntrinsicsPrior prior = UnknownCameraPrior(camera);
+  EXPECT_THAT(prior.held, testing::IsEmpty());
+  for (const std::size_t focal : {0, 1}) EXPECT_NEAR(prior.sigmas[focal], 1405, 1e-9);
+  for (const std::size_t center : {2, 3}) EXPECT_NEAR(prior.sigmas[center], 0.02 * 1920, 1e-9);
+  EXPECT_THAT(std::vector<double>(prior.mean.begin() + 2, prior.mean.end()),
+              testing::ElementsAre(960, 540, 0, 0, 0, 0));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "exporters/formats/shape_csv.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/true_model.h"
 #include "tests/workflows/commands/stages_fixture.h"
@@ -197,6 +198,43 @@ TEST_F(StagesTest, TruncatedModelNamesItsFile) {
   WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   fs::resize_file(dir_ / "model/points3D.bin", 100);
   ExpectError(Export(), 2, "points3D.bin");
+}
+
+// All corners may be seen too far inside their markers, which shortens a side by two insets,
+// whether or not a database says how the corners were found.
+TEST_F(StagesTest, TheInsetOfAllCornersIsInTheSigmaOfTheScaleWithoutADatabaseToo) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  ASSERT_EQ(Register().exit_code, 0);
+  double largest_side_px = 0;
+  for (const FrameDetections& frame : scene_.frames) {
+    for (const MarkerDetection& marker : frame.markers) {
+      const auto& x_px = marker.corners_in_image_px;
+      largest_side_px =
+          std::max({largest_side_px, (x_px[1] - x_px[0]).norm(), (x_px[2] - x_px[1]).norm()});
+    }
+  }
+  std::vector<double> sigmas;
+  for (const bool with_database : {true, false}) {
+    std::vector<std::string> arguments = {"bundle_adjuster",
+                                          "--backend",
+                                          "markers",
+                                          "--input_path",
+                                          path("sparse/seed"),
+                                          "--marker_length",
+                                          "0.1",
+                                          "--output_path",
+                                          path("model"),
+                                          "--MarkerAdjustment.common_print_tolerance",
+                                          "1e-6"};
+    if (with_database) {
+      arguments.insert(arguments.end(), {"--database_path", path("database.db")});
+    }
+    const ProgramRun run = RunVelamap(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    sigmas.push_back(ReadUncertainty(path("model")).relative_scale_sigma);
+  }
+  EXPECT_GT(sigmas[1], 2 * 0.01 / largest_side_px);
+  EXPECT_NEAR(sigmas[1], sigmas[0], 0.01 * sigmas[0]);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/camera/calibration.h"
+#include "importer/camera/calibration_writer.h"
 #include "importer/database/colmap_database.h"
 #include "tests/support/render/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
@@ -119,6 +120,36 @@ TEST_F(UnknownCameraTest, WishesThatNeedACalibrationAreRefused) {
       Reconstruct("b", {"--backend", "markers", "--prior_shape_path", prior.string()});
   EXPECT_EQ(with_prior.exit_code, 2);
   EXPECT_THAT(with_prior.err, HasSubstr("--prior_shape_path: says where markers are only with"));
+}
+
+// A camera that an earlier run has found is not that of a result with a calibration.
+TEST_F(UnknownCameraTest, AFoundCameraDoesNotStayBesideAResultWithACalibration) {
+  const EstimatedCamera estimate{scene_->camera,
+                                 std::vector<double>(scene_->camera.params.size(), 0.5)};
+  const std::string given = (dir_.path() / "given.yml").string();
+  WriteCalibration(estimate, "of the board", given);
+  const fs::path beside = dir_.path() / "known" / "camera.yml";
+  const auto reconstruct = [&](const std::string& camera_path) {
+    const ProgramRun run =
+        Reconstruct("known", {"--backend", "markers", "--camera_path", camera_path,
+                              "--ArucoDetection.estimate_formation", "0"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  };
+  reconstruct(given);
+  EXPECT_FALSE(fs::exists(beside));
+  WriteCalibration(estimate, "found by velamap 0.1 from 12 images of markers", beside.string());
+  reconstruct(given);
+  EXPECT_FALSE(fs::exists(beside));
+  // Neither a file of the user, nor another calibration, nor the one that is given is removed.
+  WriteTextFile(beside, "found by velamap, and then edited by hand");
+  reconstruct(given);
+  EXPECT_TRUE(fs::exists(beside));
+  WriteCalibration(estimate, "velamap camera_calibrator: 20 views", beside.string());
+  reconstruct(given);
+  EXPECT_TRUE(fs::exists(beside));
+  WriteCalibration(estimate, "found by velamap 0.1 from 12 images of markers", beside.string());
+  reconstruct(beside.string());
+  EXPECT_TRUE(fs::exists(beside));
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+#include "workflows/check/clip_precision.h"
+
+#include <gmock/gmock.h>
+
+#include "importer/database/colmap_database.h"
+#include "tests/support/synthetic_scene.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+// A sail, filmed with a lens that is zoomed in the middle of the clip.
+SyntheticScene ZoomedSail(double zoom) {
+  SyntheticSceneOptions options;
+  options.num_rows = 4;
+  options.num_columns = 5;
+  options.num_frames = 32;
+  options.camera = {CameraModel::kSimpleRadial, 1920, 1080, {1500, 960, 540, 0}};
+  SyntheticScene scene = MakeSyntheticScene(options);
+  SyntheticNoiseOptions noise;
+  noise.corner_sigma_px = 0.1;
+  AddNoise(noise, &scene);
+  const Eigen::Vector2d middle_px(960, 540);
+  for (std::size_t i = scene.frames.size() / 2; i < scene.frames.size(); ++i) {
+    for (MarkerDetection& marker : scene.frames[i].markers) {
+      for (Eigen::Vector2d& corner_px : marker.corners_in_image_px) {
+        corner_px = middle_px + zoom * (corner_px - middle_px);
+      }
+    }
+  }
+  return scene;
+}
+
+ClipPrecision PrecisionOf(const SyntheticScene& scene) {
+  const TempDir dir;
+  const std::string path = (dir / "clip.db").string();
+  {
+    ColmapDatabase database(path, ColmapDatabase::Mode::kReadWriteCreate);
+    ColmapDatabase::Transaction transaction(&database);
+    const CameraId camera_id = database.AddCamera(scene.camera);
+    for (const FrameDetections& frame : scene.frames) database.AddImage(camera_id, frame, "test");
+    transaction.Commit();
+  }
+  return MeasurePrecision(path, scene.layout, 1);
+}
+
+// The points of a model with one camera hide more than half of a zoom.
+TEST(ClipPrecision, AZoomIsMeasuredBeforeItIsNamed) {
+  const ClipPrecision precision = PrecisionOf(ZoomedSail(1.08));
+  ASSERT_TRUE(precision.steadiness.step.has_value());
+  EXPECT_NEAR(precision.steadiness.step->after_px / precision.steadiness.step->before_px, 1.08,
+              0.005);
+  EXPECT_TRUE(precision.steadiness.step->SpoilsShape());
+}
+
+TEST(ClipPrecision, ASteadyLensHasNoStep) {
+  const ClipPrecision precision = PrecisionOf(ZoomedSail(1.0));
+  EXPECT_FALSE(precision.steadiness.step.has_value());
+  EXPECT_EQ(precision.num_images, 32);
+  EXPECT_EQ(precision.num_markers, 20);
+}
+
+}  // namespace
+}  // namespace velamap
