@@ -15,8 +15,9 @@ namespace velamap {
 inline std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                                   int border_bits,
                                                   const ArucoDetectionOptions& options) {
-  const std::vector<MarkerQuad> quads = SearchMarkers(gray, dictionary, border_bits, options);
-  return RefineMarkers(gray, quads, dictionary, border_bits, options);
+  const ImageFormation formation;  // gcc 12 takes the default argument for dangling
+  return RefineMarkers(gray, SearchMarkers(gray, dictionary, border_bits, options), dictionary,
+                       border_bits, options, formation);
 }
 
 }  // namespace velamap
