@@ -12,6 +12,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     adjust/rolling_shutter_test.cc
     problem/corner_velocities_test.cc
     problem/marker_cost_functions_test.cc
+    problem/marker_problem_test.cc
     sizes/few_markers_test.cc
     sizes/marker_sizes_test.cc
     sizes/part_sizes_test.cc

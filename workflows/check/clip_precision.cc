@@ -63,8 +63,7 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.marker_sigma_mm = MedianSigma(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
-  // Doubtful steps are not measured, because a check has to be quick.
-  precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));
+  precision.steadiness = JudgeSteadiness(model);
   precision.steadiness.step =
       ConfirmFocalStep(adjustment_options, layout, corner_errors, &seed, precision.steadiness.step);
   precision.calibration = summary.uncertainty.calibration;

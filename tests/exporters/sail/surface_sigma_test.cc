@@ -53,15 +53,5 @@ TEST(SurfaceSigma, IsUnknownWithoutACornerOrForAnInterpolatingSurface) {
   EXPECT_FALSE(RmsSigma(fit, nullptr).has_value());
 }
 
-// The sail is three times as wide at the foot as at the head.
-TEST(SurfaceSigma, EveryPieceCountsByItsArea) {
-  const FittedSurface fit = FitSurface(NoisySail());
-  const Eigen::Index half = 3 * static_cast<Eigen::Index>(fit.points.size()) / 2;
-  PointCovariance foot = SharedBy(fit, 0.05), head = foot;
-  foot.factor.bottomRows(foot.factor.rows() - half).setZero();
-  head.factor.topRows(half).setZero();
-  EXPECT_GT(RmsSigma(fit, &foot).value(), 1.3 * RmsSigma(fit, &head).value());
-}
-
 }  // namespace
 }  // namespace velamap
