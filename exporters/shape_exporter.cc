@@ -4,16 +4,22 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/exchange/alicevision_scene.h"
 #include "exporters/exchange/metashape_markers.h"
+#include "exporters/formats/float_step.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/scale/scale_csv.h"
+#include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_transform.h"
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
@@ -21,6 +27,7 @@
 #include "importer/base/files.h"
 #include "importer/base/log.h"
 #include "importer/base/replacement.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
@@ -127,6 +134,18 @@ void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choic
   }
 }
 
+// The step of the coarsest STL file, see CoarseFloatStep_m().
+std::optional<double> CoarsestStlStep_m(const ShapeExportReport& report) {
+  std::optional<double> coarsest_m;
+  for (const SailSurface& surface : report.sail.surfaces) {
+    coarsest_m = std::max(coarsest_m, CoarseFloatStep_m(surface.mesh.vertices_m));
+  }
+  for (const PartSurface& part : report.freeform.surfaces) {
+    coarsest_m = std::max(coarsest_m, CoarseFloatStep_m(part.surface.mesh.vertices_m));
+  }
+  return coarsest_m;
+}
+
 std::exception_ptr FirstSurfaceError(const ShapeExportReport& report) {
   return report.sail.surface_error ? report.sail.surface_error : report.freeform.surface_error;
 }
@@ -176,6 +195,25 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
   return report;
 }
 
+std::vector<std::string> FrameWarnings(const ShapeExportReport& report, const Layout& layout,
+                                       bool writes_files) {
+  std::vector<std::string> warnings;
+  // Known points tell up from down by themselves.
+  const FrameAttempt measured = FrameOfKnownPoints(report.known_points);
+  const bool is_measured = measured.frame && measured.frame->name == report.frame.name;
+  const std::string doubt = is_measured ? "" : DoubtAboutSailUp(report.shape, layout);
+  if (!doubt.empty()) warnings.push_back(doubt);
+  const std::optional<double> step_m = CoarsestStlStep_m(report);
+  if (writes_files && step_m) {
+    warnings.push_back(fmt::format(
+        "the frame is so far from the object that STL files, which hold 32-bit floats, have steps "
+        "of {:.3g} mm; give known_points from an origin near the object, or use the STEP, PLY or "
+        "OBJ files",
+        kMmPerM * *step_m));
+  }
+  return warnings;
+}
+
 ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
                                const ShapeExporterOptions& options,
                                const AdjustmentUncertainty* uncertainty) {
@@ -189,6 +227,10 @@ ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
   report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
   report.freeform =
       ComputeFreeform(report.shape, layout, covariance, options.sail.mesh, options.num_threads);
+  const bool writes_files = !options.shape_output_path.empty();
+  for (const std::string& warning : FrameWarnings(report, layout, writes_files)) {
+    LogWarning(warning);
+  }
   return report;
 }
 

@@ -72,10 +72,15 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
                                const std::optional<FrameChoice>& frame, ScaleMethod scale_by,
                                const AdjustmentUncertainty* uncertainty = nullptr);
 
-// MeasureShape() with sections and surfaces: all that WriteShape() writes with the same options.
-// Throws InputError also for bad options, among them folders that WriteShape() would refuse. An
-// option of the surface that the size of the part forbids is left to the caller, see
-// ShapeExportReport::ThrowSurfaceErrorBeforeReplacing().
+// What is doubtful about the frame, and about files that are too coarse in it: one sentence with
+// the remedy each. `writes_files`: whether the files of the shape are written.
+std::vector<std::string> FrameWarnings(const ShapeExportReport& report, const Layout& layout,
+                                       bool writes_files);
+
+// MeasureShape() with sections and surfaces, and FrameWarnings() in the log: all that WriteShape()
+// writes with the same options. Throws InputError also for bad options, among them folders that
+// WriteShape() would refuse. An option of the surface that the size of the part forbids is left to
+// the caller, see ShapeExportReport::ThrowSurfaceErrorBeforeReplacing().
 ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
                                const ShapeExporterOptions& options,
                                const AdjustmentUncertainty* uncertainty = nullptr);

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
-
-#include <Eigen/Geometry>
 
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/shape_sigma.h"
@@ -42,6 +39,18 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
     }
   }
   return block;
+}
+
+// covariance * columns, which have three rows for each of its points.
+Eigen::MatrixXd ProductOf(const PointCovariance& covariance, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd product = covariance.factor * (covariance.signs.asDiagonal() *
+                                                 (covariance.factor.transpose() * columns));
+  Eigen::Index begin = 0;
+  for (const Eigen::MatrixXd& block : covariance.blocks) {
+    product.middleRows(begin, block.rows()) += block * columns.middleRows(begin, block.rows());
+    begin += block.rows();
+  }
+  return product;
 }
 
 }  // namespace
@@ -100,62 +109,88 @@ AlignmentSensitivity::Vector6d AlignmentSensitivity::MotionGradient(
   return gradient;
 }
 
-void AlignmentSensitivity::AddAlignment(const Eigen::Vector3d& x_in_reference_m,
-                                        const Eigen::Vector3d& direction,
-                                        CornerGradient* gradient) const {
-  const Vector6d by_motion = inverse_normal_ * MotionGradient(x_in_reference_m, direction);
+std::map<CornerId, Eigen::Matrix<double, 3, 6>> AlignmentSensitivity::MotionByCorner() const {
+  std::map<CornerId, Eigen::Matrix<double, 3, 6>> by_corner;
   for (const AlignmentEquation& equation : alignment_.equations) {
     const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
-    const Eigen::Vector3d part = -equation.weight * by_motion.dot(row) * equation.direction;
-    const auto [it, is_new] = gradient->emplace(equation.corner, part);
+    const Eigen::Matrix<double, 3, 6> part =
+        -equation.weight * equation.direction * (inverse_normal_ * row).transpose();
+    const auto [it, is_new] = by_corner.emplace(equation.corner, part);
     if (!is_new) it->second += part;
   }
+  return by_corner;
 }
 
-PointGradient AlignmentSensitivity::InFrameOf(ComparedShape whose,
-                                              const CornerGradient& gradient) const {
-  const Eigen::Quaterniond target_from_reference =
-      whose == ComparedShape::kShape ? alignment_.reference_from_shape.rotation.conjugate()
-                                     : Eigen::Quaterniond::Identity();
-  PointGradient rotated;
-  for (const auto& [corner, value] : gradient) {
-    rotated.emplace_back(Point3DIdFromCorner(corner), target_from_reference * value);
+AlignedNoise::AlignedNoise(const AlignmentSensitivity& sensitivity, ComparedShape whose,
+                           const PointCovariance& covariance)
+    : sensitivity_(sensitivity),
+      covariance_(covariance),
+      own_from_reference_(whose == ComparedShape::kShape
+                              ? sensitivity.ReferenceFromShape().rotation.conjugate()
+                              : Eigen::Quaterniond::Identity()) {
+  const Eigen::Matrix3d rotation = own_from_reference_.toRotationMatrix();
+  Eigen::MatrixXd motion_by_rows = Eigen::MatrixXd::Zero(covariance.factor.rows(), 6);
+  for (const auto& [corner, motion] : sensitivity.MotionByCorner()) {
+    const int idx = covariance.IndexOf(Point3DIdFromCorner(corner));
+    has_all_corners_ = has_all_corners_ && idx >= 0;
+    if (idx >= 0) motion_by_rows.middleRows<3>(3 * idx) = rotation * motion;
   }
-  return rotated;
+  if (!has_all_corners_) return;
+  corners_with_motion_ = ProductOf(covariance, motion_by_rows);
+  of_motion_ = motion_by_rows.transpose() * corners_with_motion_;
 }
 
-std::optional<double> AlignmentSensitivity::VarianceAt(const Eigen::Vector3d& x_in_reference_m,
-                                                       const Eigen::Vector3d& direction,
-                                                       CornerGradient own, ComparedShape whose,
-                                                       const PointCovariance& covariance) const {
-  AddAlignment(x_in_reference_m, direction, &own);
-  const PointGradient gradient = InFrameOf(whose, own);
-  if (!HasPointsOf(gradient, &covariance)) return std::nullopt;
-  return VarianceOf(covariance, gradient);
+std::optional<Eigen::MatrixXd> AlignedNoise::CovarianceOfPlaces(
+    const std::vector<CornerGradient>& own, const Eigen::MatrixXd& by_motion) const {
+  if (!has_all_corners_) return std::nullopt;
+  std::vector<PointGradient> rotated(own.size());
+  Eigen::MatrixXd own_with_motion = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own.size()), 6);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (const auto& [corner, value] : own[i]) {
+      const Point3DId point3D_id = Point3DIdFromCorner(corner);
+      const int idx = covariance_.IndexOf(point3D_id);
+      if (idx < 0) return std::nullopt;
+      rotated[i].emplace_back(point3D_id, own_from_reference_ * value);
+      own_with_motion.row(static_cast<Eigen::Index>(i)) +=
+          rotated[i].back().second.transpose() * corners_with_motion_.middleRows<3>(3 * idx);
+    }
+  }
+  const Eigen::MatrixXd both = own_with_motion * by_motion;
+  return Eigen::MatrixXd(JointCovarianceOf(covariance_, rotated) + both + both.transpose() +
+                         by_motion.transpose() * of_motion_ * by_motion);
 }
 
-std::optional<Eigen::Matrix3d> AlignmentSensitivity::CenterCovariance(
-    const MarkerInReference& marker, ComparedShape whose, const PointCovariance& covariance) const {
-  std::vector<PointGradient> gradients;
+std::optional<double> AlignedNoise::VarianceAt(const Eigen::Vector3d& x_in_reference_m,
+                                               const Eigen::Vector3d& direction,
+                                               const CornerGradient& own) const {
+  const auto covariance_m2 =
+      CovarianceOfPlaces({own}, sensitivity_.MotionGradient(x_in_reference_m, direction));
+  if (!covariance_m2) return std::nullopt;
+  return std::max(0.0, (*covariance_m2)(0, 0));  // rounding errors are cut off
+}
+
+std::optional<Eigen::Matrix3d> AlignedNoise::CenterCovariance(
+    const MarkerInReference& marker) const {
+  std::vector<CornerGradient> own(3);
+  Eigen::MatrixXd by_motion(6, 3);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
-    CornerGradient gradient;
     for (int corner = 1; corner <= kNumCorners; ++corner) {
-      gradient[{marker.marker_id, corner}] = direction / kNumCorners;
+      own[static_cast<std::size_t>(axis)][{marker.marker_id, corner}] = direction / kNumCorners;
     }
-    AddAlignment(marker.center_in_reference_m, direction, &gradient);
-    gradients.push_back(InFrameOf(whose, gradient));
-    if (!HasPointsOf(gradients.back(), &covariance)) return std::nullopt;
+    by_motion.col(axis) = sensitivity_.MotionGradient(marker.center_in_reference_m, direction);
   }
-  return Eigen::Matrix3d(JointCovarianceOf(covariance, gradients));
+  const auto covariance_m2 = CovarianceOfPlaces(own, by_motion);
+  if (!covariance_m2) return std::nullopt;
+  return Eigen::Matrix3d(*covariance_m2);
 }
 
-std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
-    const MarkerInReference& marker, const PointCovariance& shape,
-    const PointCovariance* reference) const {
-  const auto of_shape = CenterCovariance(marker, ComparedShape::kShape, shape);
+std::optional<Eigen::Matrix3d> DifferenceCovariance(const MarkerInReference& marker,
+                                                    const AlignedNoise& shape,
+                                                    const AlignedNoise* reference) {
+  const auto of_shape = shape.CenterCovariance(marker);
   if (!of_shape || reference == nullptr) return of_shape;
-  const auto of_reference = CenterCovariance(marker, ComparedShape::kReference, *reference);
+  const auto of_reference = reference->CenterCovariance(marker);
   if (!of_reference) return std::nullopt;
   return Eigen::Matrix3d(*of_shape + *of_reference);
 }

@@ -5,11 +5,14 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "exporters/compare/shape_alignment.h"
 #include "exporters/shape/marker_shape.h"
+#include "importer/geometry/rigid3.h"
 #include "reconstruct/geometry/point_covariance.h"
 
 namespace velamap {
@@ -32,53 +35,76 @@ using CornerGradient = std::map<CornerId, Eigen::Vector3d>;
 // Which of the two shapes a covariance belongs to.
 enum class ComparedShape { kShape, kReference };
 
-// Derivatives of the least-squares pose with respect to the corners of the alignment.
+// Derivatives of the least-squares pose with respect to the corners of the alignment. A motion is a
+// rotation about the mean of the corners, in units of 1 / their root mean square distance from it,
+// and a translation, m; both in the frame of the reference.
 class AlignmentSensitivity {
  public:
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+
   explicit AlignmentSensitivity(const Alignment& alignment);
 
-  // Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame
-  // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
-  // covariance lacks a corner of the marker or of the alignment.
-  std::optional<Eigen::Matrix3d> DifferenceCovariance(const MarkerInReference& marker,
-                                                      const PointCovariance& shape,
-                                                      const PointCovariance* reference) const;
+  // d (direction . x) / d motion.
+  Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
+                          const Eigen::Vector3d& direction) const;
 
-  // Variance, m^2, of a point on one shape along a direction, from the noise of that shape; point
-  // and direction are in the frame of the reference. `own` is the gradient of the point along the
-  // direction for a fixed alignment. Nothing if the covariance lacks one of the corners.
-  std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
-                                   const Eigen::Vector3d& direction, CornerGradient own,
-                                   ComparedShape whose, const PointCovariance& covariance) const;
+  // d motion / d corner: each row of a matrix belongs to an axis of the reference. The reference's
+  // errors enter with the opposite sign, which does not change a covariance.
+  std::map<CornerId, Eigen::Matrix<double, 3, 6>> MotionByCorner() const;
+
+  const Rigid3& ReferenceFromShape() const { return alignment_.reference_from_shape; }
 
   // Number of the six rigid motions that the equations do not determine, such as the rotations of a
   // sphere.
   int NumFreeDirections() const { return num_free_directions_; }
 
  private:
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-  // d (direction . x) / d (rotation, translation), with the rotation about center_ in units of
-  // 1 / radius_m_.
-  Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
-                          const Eigen::Vector3d& direction) const;
-  // Adds the effect of the corners on the alignment to the gradient of direction . x, where x is a
-  // point of the aligned shape.
-  void AddAlignment(const Eigen::Vector3d& x_in_reference_m, const Eigen::Vector3d& direction,
-                    CornerGradient* gradient) const;
-  // Converts the gradient to the frame of the shape whose corners it refers to. The reference's
-  // errors enter with the opposite sign, which does not change a covariance.
-  PointGradient InFrameOf(ComparedShape whose, const CornerGradient& gradient) const;
-  // Covariance of the centre of a marker, from the noise of one shape.
-  std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker,
-                                                  ComparedShape whose,
-                                                  const PointCovariance& covariance) const;
-
   const Alignment& alignment_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double radius_m_ = 1.0;
   Eigen::Matrix<double, 6, 6> inverse_normal_ = Eigen::Matrix<double, 6, 6>::Zero();
   int num_free_directions_ = 0;
 };
+
+// What the noise of one shape does to places on it after the alignment, which that noise moves too.
+// The motion depends on all corners, and is multiplied with their covariance only once: each place
+// then takes the time of its own corners.
+class AlignedNoise {
+ public:
+  // `covariance` is that of the corners of one shape (`whose`), in its own frame. It and the
+  // alignment must outlive this.
+  AlignedNoise(const AlignmentSensitivity& sensitivity, ComparedShape whose,
+               const PointCovariance& covariance);
+
+  // Variance, m^2, of a place along a direction, both in the frame of the reference. `own` is the
+  // gradient of the place along the direction without what its corners do to the alignment. Nothing
+  // if the covariance lacks one of the corners.
+  std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
+                                   const Eigen::Vector3d& direction,
+                                   const CornerGradient& own) const;
+
+  // Covariance of the centre of a marker, m^2, in the frame of the reference. Nothing if the
+  // covariance lacks a corner of the marker or of the alignment.
+  std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker) const;
+
+ private:
+  // Of functions of the shape, each with the gradient of its own corners and that of the motion.
+  std::optional<Eigen::MatrixXd> CovarianceOfPlaces(const std::vector<CornerGradient>& own,
+                                                    const Eigen::MatrixXd& by_motion) const;
+
+  const AlignmentSensitivity sensitivity_;
+  const PointCovariance& covariance_;
+  Eigen::Quaterniond own_from_reference_;
+  bool has_all_corners_ = true;
+  Eigen::MatrixXd corners_with_motion_;  // covariances, 3n x 6
+  Eigen::MatrixXd of_motion_ = Eigen::MatrixXd::Zero(6, 6);
+};
+
+// Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame of
+// the reference. `reference` is null for a surface, which counts as exact. Nothing if a covariance
+// lacks a corner of the marker or of the alignment.
+std::optional<Eigen::Matrix3d> DifferenceCovariance(const MarkerInReference& marker,
+                                                    const AlignedNoise& shape,
+                                                    const AlignedNoise* reference);
 
 }  // namespace velamap

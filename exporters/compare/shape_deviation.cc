@@ -183,6 +183,8 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
   ShapeDeviation deviation;
   deviation.alignment = AlignShapes(shape.shape, reference.shape, layout, options);
   const AlignmentSensitivity sensitivity(deviation.alignment);
+  const AlignedNoise noise(sensitivity, ComparedShape::kShape, shape.covariance),
+      noise_of_reference(sensitivity, ComparedShape::kReference, reference.covariance);
   deviation.aligned_shape =
       Aligned(deviation.alignment.reference_from_shape, OnPart(shape.shape, layout, part));
   for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
@@ -199,8 +201,8 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
     result.normal = MarkerNormal(*other);
     result.difference_m = *marker.x_in_shape_m[0] - *other->x_in_shape_m[0];
     result.distance_m = result.normal.dot(*result.difference_m);
-    SetSigma(sensitivity.DifferenceCovariance({marker.marker_id, result.x_in_reference_m},
-                                              shape.covariance, &reference.covariance),
+    SetSigma(DifferenceCovariance({marker.marker_id, result.x_in_reference_m}, noise,
+                                  &noise_of_reference),
              0.0, &result);
     deviation.markers.push_back(std::move(result));
   }
@@ -234,6 +236,7 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
   const MarkerShape compared = OnPart(shape.shape, layout, part);
   deviation.alignment = AlignToMesh(compared, mesh, options);
   const AlignmentSensitivity sensitivity(deviation.alignment);
+  const AlignedNoise noise(sensitivity, ComparedShape::kShape, shape.covariance);
   deviation.aligned_shape = Aligned(deviation.alignment.reference_from_shape, compared);
   for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
     if (!marker.IsWhole()) continue;
@@ -245,8 +248,8 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
     result.normal = foot.normal;
     result.distance_m = foot.distance_m;
     result.beside_m = foot.beside_m;
-    const auto covariance_m2 = sensitivity.DifferenceCovariance(
-        {marker.marker_id, result.x_in_reference_m}, shape.covariance, nullptr);
+    const auto covariance_m2 =
+        DifferenceCovariance({marker.marker_id, result.x_in_reference_m}, noise, nullptr);
     const double reach_m = ReachOf(foot, result.x_in_reference_m, covariance_m2, edge);
     result.is_over_surface = foot.IsWithin(reach_m, mesh.Diagonal_m());
     if (result.is_over_surface && !foot.IsOverSurface(mesh.Diagonal_m())) {

@@ -16,7 +16,7 @@ namespace velamap {
 class SurfaceNoise {
  public:
   // `fit` belongs to the markers of the shape or of its reference (`whose`), in the frame of the
-  // reference. `covariance` is that of its corners, in its own frame. All must outlive this.
+  // reference. `covariance` is that of its corners, in its own frame. Both must outlive this.
   SurfaceNoise(const FittedSurface& fit, ComparedShape whose,
                const AlignmentSensitivity& sensitivity, const PointCovariance& covariance);
 
@@ -27,9 +27,7 @@ class SurfaceNoise {
 
  private:
   const FittedSurface& fit_;
-  const ComparedShape whose_;
-  const AlignmentSensitivity& sensitivity_;
-  const PointCovariance& covariance_;
+  const AlignedNoise noise_;
 };
 
 }  // namespace velamap

@@ -53,6 +53,30 @@ Json CurveJson(const std::string& name, const Section& section, const Section& o
   return {{"name", name}, {"own", std::move(own)}, {"placed", std::move(placed)}};
 }
 
+// A section of the reference, and the comparison whose markers give it.
+struct DrawnSection {
+  const SectionComparison* comparison;
+  const Section* section;
+};
+
+// The sections that the reference of any shape has, each once, from that of the first shape which
+// has it; by part, from the lowest up, as in the reports.
+std::vector<DrawnSection> SectionsOfReferences(const std::vector<Comparison>& series) {
+  std::vector<DrawnSection> all;
+  for (const Comparison& comparison : series) {
+    auto place = all.begin();
+    for (const Section& section : comparison.sections.of_reference.sections) {
+      const auto found = std::find_if(all.begin(), all.end(), [&](const DrawnSection& drawn) {
+        return drawn.section->part == section.part && drawn.section->name == section.name;
+      });
+      const bool is_new = found == all.end();
+      place = is_new ? all.insert(place, {&comparison.sections, &section}) : found;
+      ++place;
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 ComparisonJsonValue Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
@@ -88,8 +112,8 @@ ComparisonJsonValue NumbersJson(const std::vector<Comparison>& series) {
 
 ComparisonJsonValue ProfilesJson(const ComparisonPageInput& input) {
   Json profiles = Json::array();
-  const SectionComparison& first = input.series.front().sections;
-  for (const Section& reference : first.of_reference.sections) {
+  for (const DrawnSection& drawn : SectionsOfReferences(input.series)) {
+    const Section& reference = *drawn.section;
     Json curves =
         Json::array({CurveJson(input.reference_name, reference, reference, reference, Rigid3())});
     for (const Comparison& comparison : input.series) {
@@ -99,10 +123,10 @@ ComparisonJsonValue ProfilesJson(const ComparisonPageInput& input) {
       const Section* section = find_section(comparison.sections.of_shape);
       const Section* own_reference = find_section(comparison.sections.of_reference);
       if (section == nullptr || own_reference == nullptr) continue;
-      const Rigid3 first_from_frame =
-          first.frame_from_reference * Inverse(comparison.sections.frame_from_reference);
+      const Rigid3 drawn_from_frame = drawn.comparison->frame_from_reference *
+                                      Inverse(comparison.sections.frame_from_reference);
       curves.push_back(
-          CurveJson(comparison.name, *section, *own_reference, reference, first_from_frame));
+          CurveJson(comparison.name, *section, *own_reference, reference, drawn_from_frame));
     }
     profiles.push_back({{"section", SectionName(input.series, reference.part, reference.name)},
                         {"curves", std::move(curves)}});

@@ -6,13 +6,33 @@
 
 #include "exporters/design/mesh_parser.h"
 #include "exporters/design/mesh_process.h"
+#include "exporters/formats/float_step.h"
 #include "exporters/formats/mesh_writer.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Assimp holds coordinates as 32-bit floats, whatever the file has.
+void CheckFloatStep(const fs::path& path, const TriangleMesh& mesh) {
+  constexpr double kUselessStep_m = 1e-3;
+  const std::optional<double> step_m = CoarseFloatStep_m(mesh.vertices_m);
+  if (!step_m) return;
+  const std::string problem = fmt::format(
+      "{}: its coordinates are so far from the origin that they are read in steps of {:.3g} mm; "
+      "export it in a frame near the object, or as STEP",
+      path.string(), kMmPerM * *step_m);
+  if (*step_m > kUselessStep_m) throw InputError(problem);
+  LogWarning(problem);
+}
+
+}  // namespace
 
 bool HasOwnUnit(const fs::path& path) {
   const std::string extension = LowerExtension(path);
@@ -40,7 +60,9 @@ double MPerUnitFromName(const std::string& name, const std::string& what) {
 
 TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
   CheckMeshFile(path);
-  return ParseMeshInChild(path, options);
+  TriangleMesh mesh = ParseMeshInChild(path, options);
+  if (!HasOwnUnit(path)) CheckFloatStep(path, mesh);
+  return mesh;
 }
 
 }  // namespace velamap

@@ -37,8 +37,9 @@ void ServeMeshReader(int argc, char** argv);
 
 // Divides polygons into triangles and ignores points, lines, normals and colours. Throws InputError
 // naming the file if it is missing, has another extension, is too large (mesh_parser.h), cannot be
-// read, has no triangles, or has a coordinate that is not finite; also if reading it crashes, or
-// takes more time or memory than MeshLimits (mesh_process.h) allow.
+// read, has no triangles, has a coordinate that is not finite, or lies so far from the origin that
+// PLY, STL or OBJ are read in steps above 1 mm (above 0.01 mm, it warns); also if reading it
+// crashes, or takes more time or memory than MeshLimits (mesh_process.h) allow.
 TriangleMesh ReadMesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace velamap

@@ -17,6 +17,8 @@
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <IGESData_IGESWriter.hxx>
+#include <IGESSelect_WorkLibrary.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Writer.hxx>
 #include <StepBasic_Product.hxx>
@@ -49,6 +51,7 @@ namespace velamap {
 namespace {
 
 constexpr double kToleranceMm = 1e-5;
+constexpr int kIgesDecimals = 15;  // after the first digit: all that a double holds
 
 struct Knots {
   std::vector<double> values;
@@ -250,7 +253,11 @@ void WriteIges(const SplineSurface& surface, const std::string& name, std::ostre
   }
   writer.ComputeModel();
   DescribeIges(Ascii(name), Ascii(extras.iges_file_name), &writer);
-  VELAMAP_CHECK(writer.Write(out, Standard_False) || !out);
+  IGESData_IGESWriter text(writer.Model());
+  // By default ten digits are written, which are tenths of a millimetre far from the origin.
+  text.FloatWriter().SetDefaults(kIgesDecimals);
+  text.SendModel(IGESSelect_WorkLibrary::DefineProtocol());
+  VELAMAP_CHECK(text.Print(out) || !out);
 }
 
 }  // namespace velamap

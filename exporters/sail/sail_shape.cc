@@ -46,15 +46,16 @@ void CheckEdges(const MarkerShape& shape, const SurfaceEdges& edges) {
   }
 }
 
-SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
-                            const PointCovariance* covariance, const SailOptions& options) {
+SailSurface MakeSailSurface(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout,
+                            const LayoutPart& part, const PointCovariance* covariance,
+                            const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
   SurfaceOptions of_part = options.surface;
   // The points of a file are on the edges of one sail.
   if (&part != FirstPartWithLines(layout)) of_part.edges = {};
   CheckEdges(shape, of_part.edges);
-  surface.fit = FitSurface(CollectSurfaceInput(shape, part), of_part);
+  surface.fit = FitSurface(CollectSurfaceInput(shape, part, frame.up_in_frame), of_part);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
   surface.rms_sigma_m = RmsSigma(surface.fit, covariance);
   surface.mesh = MeshSurface(
@@ -142,7 +143,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
       continue;
     }
     const auto fit = [&] {
-      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, covariance, options));
+      sail.surfaces.push_back(MakeSailSurface(shape, frame, layout, part, covariance, options));
       return sail.surfaces.back().fit.notes;
     };
     TryFitSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);

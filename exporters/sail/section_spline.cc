@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "exporters/formats/surface_spline.h"
+#include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -125,6 +126,29 @@ double Score(const std::vector<Smoother>& smoothers, double smoothing) {
   return residual / std::pow(std::max(num_values - trace, 1e-9), 2);
 }
 
+// The curves whose points decide on the smoothing. Without sigmas, a curve of four points says
+// nothing: all that a parabola leaves of them is one residual per axis, and its cross-validation
+// error is the same for every smoothing. Where all curves are so short, all get a nominal sigma.
+std::vector<CurveData> VotersAmong(const std::vector<CurveData>& curves) {
+  if (curves.front().covariance_m2.size() > 0) return curves;
+  std::vector<CurveData> voters;
+  Eigen::Matrix3Xd all_points(3, 0);
+  for (const CurveData& curve : curves) {
+    const Eigen::Matrix3Xd& points = curve.points_in_shape_m;
+    if (points.cols() > kCubic + 1) voters.push_back(curve);
+    all_points.conservativeResize(Eigen::NoChange, all_points.cols() + points.cols());
+    all_points.rightCols(points.cols()) = points;
+  }
+  if (!voters.empty()) return voters;
+  const double variance_m2 = std::pow(NominalSigma(all_points), 2);
+  for (CurveData curve : curves) {
+    const Eigen::Index num_values = curve.points_in_shape_m.size();
+    curve.covariance_m2 = variance_m2 * Eigen::MatrixXd::Identity(num_values, num_values);
+    voters.push_back(curve);
+  }
+  return voters;
+}
+
 }  // namespace
 
 Eigen::Vector3d EvaluateCurve(const SpaceCurve& curve, double t) {
@@ -164,7 +188,7 @@ double ChooseSmoothing(const std::vector<CurveData>& curves) {
   constexpr double kShare = 0.1;
   VELAMAP_CHECK(!curves.empty());
   std::vector<Smoother> smoothers;
-  for (const CurveData& curve : curves) smoothers.push_back(MakeSmoother(curve));
+  for (const CurveData& curve : VotersAmong(curves)) smoothers.push_back(MakeSmoother(curve));
   double best = 0.0, best_score = std::numeric_limits<double>::infinity();
   for (int step = kFirst; step <= kLast; ++step) {
     const double smoothing = std::pow(10.0, step / kStepsPerDecade);

@@ -7,7 +7,8 @@
 // angles of a sail, while a penalty on f''' costs nothing for parabolas. All lines of a sail share
 // one lambda, because they are of one cloth and determine it better together. It minimizes the
 // expected error: Mallows' Cp ("Some comments on Cp", 1973) if C is known, otherwise generalized
-// cross-validation (Golub, Heath and Wahba, 1979), which only assumes equal noise. A tenth of that
+// cross-validation (Golub, Heath and Wahba, 1979), which only assumes equal noise. Cross-validation
+// needs five points on a curve; if all have four, C is that of NominalSigma(). A tenth of that
 // lambda is used, because smoothing biases angles and draft more than the points. As lambda
 // approaches 0, f interpolates.
 

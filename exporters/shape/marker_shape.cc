@@ -81,6 +81,12 @@ Eigen::Vector3d MarkerNormal(const ShapeMarker& marker) {
   return DiagonalProduct(marker).stableNormalized();
 }
 
+Eigen::Vector3d MarkerUp(const ShapeMarker& marker) {
+  VELAMAP_CHECK(marker.IsWhole());
+  const auto& x = marker.x_in_shape_m;
+  return (*x[1] - *x[4] + *x[2] - *x[3]).normalized();
+}
+
 double MarkerArea(const ShapeMarker& marker) { return 0.5 * DiagonalProduct(marker).norm(); }
 
 std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker) {

@@ -47,6 +47,9 @@ const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id);
 // Outward unit normal, z of the marker frame. The marker must be whole.
 Eigen::Vector3d MarkerNormal(const ShapeMarker& marker);
 
+// Unit vector from the bottom side of the upright marker to its top side. The marker must be whole.
+Eigen::Vector3d MarkerUp(const ShapeMarker& marker);
+
 // Area of the quadrilateral of the corners, m^2: half the length of the cross product of its
 // diagonals (thesis section 4.3.2). The marker must be whole.
 double MarkerArea(const ShapeMarker& marker);

@@ -19,10 +19,12 @@ std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<
   Eigen::Vector3d facing = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> corners;
   for (const int id : ids) {
-    const auto& x = FindWholeMarker(shape, id)->x_in_shape_m;
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) corners.push_back(*x[corner]);
-    facing += MarkerNormal(*FindWholeMarker(shape, id));
-    part.marker_up += (*x[1] - *x[4] + *x[2] - *x[3]).normalized();
+    const ShapeMarker& marker = *FindWholeMarker(shape, id);
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      corners.push_back(*marker.x_in_shape_m[corner]);
+    }
+    facing += MarkerNormal(marker);
+    part.marker_up += MarkerUp(marker);
   }
   const PrincipalAxes principal = ComputePrincipalAxes(corners);
   part.center = principal.mean;

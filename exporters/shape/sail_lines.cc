@@ -3,6 +3,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "importer/base/error.h"
 #include "importer/geometry/principal_axes.h"
 
@@ -95,12 +97,37 @@ LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line) {
 
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const LayoutPart& part) {
   const auto up = UnitOrNothing(SumOfDirections(shape, part.vertical));
-  return up ? up : UnitOrNothing(FromLowestToHighest(shape, part.horizontal));
+  return up ? up : LinesUp(shape, part);
+}
+
+std::optional<Eigen::Vector3d> LinesUp(const MarkerShape& shape, const LayoutPart& part) {
+  return UnitOrNothing(FromLowestToHighest(shape, part.horizontal));
 }
 
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout) {
   const LayoutPart* part = FirstPartWithLines(layout);
   return part == nullptr ? std::nullopt : SailUp(shape, *part);
+}
+
+std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout) {
+  constexpr double kMaxCosine = -0.5;  // 120 degrees
+  constexpr double kClearMajority = 0.75;
+  const LayoutPart* part = FirstPartWithLines(layout);
+  const std::optional<Eigen::Vector3d> up = SailUp(shape, layout);
+  if (part == nullptr || !up) return "";
+  int num_whole = 0, num_against = 0;
+  for (const int id : MarkersOfPart(layout, part->name)) {
+    const ShapeMarker* marker = FindWholeMarker(shape, id);
+    if (marker == nullptr) continue;
+    ++num_whole;
+    if (MarkerUp(*marker).dot(*up) < kMaxCosine) ++num_against;
+  }
+  if (num_against == 0 || num_against < kClearMajority * num_whole) return "";
+  return fmt::format(
+      "{} of the {} markers of '{}' stand upside down if its lines are in the order of the layout; "
+      "list horizontal lines, and the markers of vertical ones, from foot to head; if the markers "
+      "are glued upside down, all is right",
+      num_against, num_whole, part->name);
 }
 
 std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const LayoutPart& part) {

@@ -38,8 +38,15 @@ LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line);
 // lowest to its highest horizontal line. Markers at the ends may be missing. Nothing if the markers
 // do not determine it.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const LayoutPart& part);
-// The same of the first part with horizontal lines.
+// The same by the order of the horizontal lines alone, whichever way the vertical ones run.
+std::optional<Eigen::Vector3d> LinesUp(const MarkerShape& shape, const LayoutPart& part);
+// SailUp() of the first part with horizontal lines.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout);
+
+// Why the first part with horizontal lines may be listed from head to foot, with the remedy: most
+// of its whole markers stand more than 120 degrees from SailUp(). Empty if they do not. Markers may
+// also be glued upside down, so that this decides nothing.
+std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout);
 
 // Unit vector up the luff: the line of least squares through the first markers of the horizontal
 // lines of the part, those that are whole. Nothing with fewer than two.

@@ -79,6 +79,13 @@ std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGrad
   return std::sqrt(VarianceOf(*covariance, gradient));
 }
 
+double NominalSigma(const Eigen::Matrix3Xd& points_in_shape_m) {
+  constexpr double kOfDiagonal = 3e-5;
+  const Eigen::Vector3d diagonal =
+      points_in_shape_m.rowwise().maxCoeff() - points_in_shape_m.rowwise().minCoeff();
+  return kOfDiagonal * diagonal.norm();
+}
+
 std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int marker_id,
                                           int corner) {
   Eigen::Vector3d sigma_m;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
 
 namespace velamap {
@@ -64,9 +65,28 @@ std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
   return {};
 }
 
+// Turns round the lines and the edges that the layout lists from head to foot. The offsets of foot
+// and head belong to the cloth, and stay.
+void OrderFromFootToHead(const MarkerShape& shape, const LayoutPart& part,
+                         const std::optional<Eigen::Vector3d>& up_in_shape, SurfaceInput* input) {
+  constexpr double kMaxCosine = -0.5;  // of the angle to up: 120 degrees
+  const std::optional<Eigen::Vector3d> up = up_in_shape ? up_in_shape : SailUp(shape, part);
+  if (!up) return;
+  const std::optional<Eigen::Vector3d> along = LinesUp(shape, part);
+  if (along && along->dot(*up) < kMaxCosine) {
+    std::reverse(input->lines.begin(), input->lines.end());
+  }
+  for (auto* edge : {&input->edges.luff, &input->edges.leech}) {
+    if (edge->empty()) continue;
+    const Eigen::Vector3d chord = edge->back() - edge->front();
+    if (chord.dot(*up) < kMaxCosine * chord.norm()) std::reverse(edge->begin(), edge->end());
+  }
+}
+
 }  // namespace
 
-SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part) {
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part,
+                                 const std::optional<Eigen::Vector3d>& up_in_shape) {
   SurfaceInput input;
   std::set<int> on_lines, others(part.marker_ids.begin(), part.marker_ids.end());
   for (const MarkerLine& line : part.horizontal) {
@@ -98,6 +118,7 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
     if (on_lines.count(marker_id) > 0) continue;
     if (const auto marker = Find(shape, marker_id)) input.markers.push_back(*marker);
   }
+  OrderFromFootToHead(shape, part, up_in_shape, &input);
   return input;
 }
 

@@ -50,12 +50,14 @@ struct SurfaceInput {
   std::string luff_note{}, leech_note{};
 };
 
-// Collects the horizontal lines of `part` in the order of the layout, its other markers, and the
-// places of its edges from the layout. Uses whole markers only. The sigma of a marker is the root
-// mean square of the three sigmas of its centre, with the errors that it shares with others:
-// neighbours share some that bend the surface, which the noise of single markers does not show. The
-// sigma of its tilt follows from the part of the corners' variances that exceeds the variance of
-// the centre.
-SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
+// Collects the horizontal lines of `part` from foot to head, its other markers, and the places of
+// its edges from the layout. Uses whole markers only. Lines that the layout lists from head to foot
+// are turned round: they run against `up_in_shape`, a unit vector, or without one against the
+// vertical lines. The sigma of a marker is the root mean square of the three sigmas of its centre,
+// with the errors that it shares with others: neighbours share some that bend the surface, which
+// the noise of single markers does not show. The sigma of its tilt follows from the part of the
+// corners' variances that exceeds the variance of the centre.
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part,
+                                 const std::optional<Eigen::Vector3d>& up_in_shape = std::nullopt);
 
 }  // namespace velamap

@@ -5,8 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Geometry>
-
+#include "exporters/shape/shape_sigma.h"
 #include "importer/base/ids.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
@@ -15,13 +14,11 @@ namespace velamap {
 
 namespace {
 
-// A nominal sigma that keeps the surface fair where few markers without sigmas would let it
-// oscillate between them. A value ten times larger or smaller hardly changes the surface.
-double NominalSigma(const SortedInput& sorted) {
-  constexpr double kOfDiagonal = 3e-5;  // 0.1 mm on a sail of 3 m
-  Eigen::AlignedBox3d box;
-  for (const auto& [id, marker] : sorted.by_id) box.extend(marker.x_in_shape_m);
-  return kOfDiagonal * box.diagonal().norm();
+double NominalSigmaOf(const SortedInput& sorted) {
+  Eigen::Matrix3Xd places_m(3, static_cast<Eigen::Index>(sorted.by_id.size()));
+  Eigen::Index i = 0;
+  for (const auto& [id, marker] : sorted.by_id) places_m.col(i++) = marker.x_in_shape_m;
+  return NominalSigma(places_m);
 }
 
 // The noise of the observations, from the residuals of a fit with so many parameters, which made
@@ -43,7 +40,7 @@ MarkerNoise DescribeNoise(const SortedInput& sorted) {
     some_zero = some_zero || (sigma && *sigma <= 0);
   }
   MarkerNoise noise;
-  noise.edge_sigma_m = known.empty() ? NominalSigma(sorted) : Median(known);
+  noise.edge_sigma_m = known.empty() ? NominalSigmaOf(sorted) : Median(known);
   if (some_zero) {
     noise.smoothing = Smoothing::kInterpolate;
   } else if (sorted.by_id.size() < kMinCrossValidated) {

@@ -35,7 +35,7 @@ function distanceColouring(data, i) {
 function colouredSurface({vertices, triangles, distances_mm: distances}, limit) {
   const geometry = new THREE.BufferGeometry();
   const colours = distances.flatMap(distance => divergingColour(distance, limit).toArray());
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(vertices, 3));
+  const origin = setVertices(geometry, vertices);
   geometry.setAttribute('color', new THREE.Float32BufferAttribute(colours, 3));
   geometry.setIndex(triangles);
   geometry.computeVertexNormals();
@@ -45,6 +45,7 @@ function colouredSurface({vertices, triangles, distances_mm: distances}, limit) 
   const atLeast_deg = 80;
   mesh.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, atLeast_deg),
                                   new THREE.LineBasicMaterial({color: '#25313c'})));
+  mesh.position.copy(origin);
   return mesh;
 }
 

@@ -2,6 +2,15 @@
 
 // Objects of the 3D view.
 
+// Sets the vertices of a geometry, x y z in turn, and returns the place where its object belongs. The vertices are
+// relative to it, because buffers hold 32-bit floats, which are half a metre apart in the frame of a national grid.
+function setVertices(geometry, coordinates) {
+  const origin = coordinates.slice(0, 3);
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(
+      coordinates.map((value, i) => value - origin[i % 3]), 3));
+  return new THREE.Vector3(...origin);
+}
+
 const whole = marker => marker.corners.every(corner => corner !== null);
 
 // Two triangles per whole marker, 1 4 3 and 1 3 2 (counter-clockwise from the front), coloured by vertex.
@@ -9,15 +18,18 @@ function markerMesh(markers) {
   const positions = markers.flatMap(
       ({corners: [a, b, c, d]}) => [a, d, c, a, c, b].flat());
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
   geometry.setAttribute('color', new THREE.Float32BufferAttribute(positions.length, 3));
-  return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors}));
+  const mesh = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors}));
+  mesh.position.copy(setVertices(geometry, positions));
+  return mesh;
 }
 
 // The backs of the same triangles, in grey.
 function markerBacks(mesh) {
-  return new THREE.Mesh(mesh.geometry, new THREE.MeshBasicMaterial(
+  const backs = new THREE.Mesh(mesh.geometry, new THREE.MeshBasicMaterial(
       {color: '#dfe4e8', side: THREE.BackSide}));
+  backs.position.copy(mesh.position);
+  return backs;
 }
 
 function colourMarkers(mesh, markers, colouring) {
@@ -33,8 +45,9 @@ function colourMarkers(mesh, markers, colouring) {
 
 function lines(points, colour) {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(points.flat(), 3));
-  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: colour}));
+  const segments = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: colour}));
+  segments.position.copy(setVertices(geometry, points.flat()));
+  return segments;
 }
 
 function markerOutlines(markers) {
@@ -87,12 +100,14 @@ function surfaceMesh(surfaces) {
 
 function oneSurface(surface) {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(surface.vertices, 3));
+  const origin = setVertices(geometry, surface.vertices);
   geometry.setIndex(surface.triangles);
   geometry.computeVertexNormals();
-  return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+  const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
     color: '#9fc3da', side: THREE.DoubleSide, transparent: true, opacity: 0.75,
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
+  mesh.position.copy(origin);
+  return mesh;
 }
 
 const boxOf = points => new THREE.Box3().setFromPoints(points);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -197,6 +198,25 @@ TEST(ComparisonSections, ASailOfTheDesignsShapeHasItsSectionsUpToTheEdge) {
       velamap::Compare("trim", sail, design, BoatLayout(), options).sections;
   EXPECT_GT(*Find(uncertain, "h2", "camber_percent").sigma,
             1.5 * *Find(sections, "h2", "camber_percent").sigma);
+}
+
+// The design has no sigmas, by which its curves would be smoothed as those of the sail are.
+TEST(ComparisonSections, LinesOfFourMarkersOnTheDesignDoNotDiffer) {
+  const MeshDistance design(SailMesh());
+  ComparisonOptions options;
+  options.alignment.method = AlignmentMethod::kNone;
+  const std::set<int> inner = {12, 15, 22, 25, 32, 35, 42, 45, 52, 55};
+  for (const double sigma_m : {0.0005, 0.005}) {
+    const UncertainShape sail = WithSigmas(Without(inner, BentBoatShape(sigma_m)));
+    const SectionComparison sections =
+        velamap::Compare("trim", sail, design, BoatLayout(), options).sections;
+    ASSERT_EQ(sections.differences.size(), 5u * 6);
+    for (const SectionDifference& d : sections.differences) {
+      EXPECT_FALSE(d.IsSignificant()) << d.section << " " << d.number;
+    }
+    const SectionDifference& draft = Find(sections, "h2", "draft_position_percent");
+    EXPECT_NEAR(draft.value, draft.reference, 0.2) << sigma_m;
+  }
 }
 
 TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {

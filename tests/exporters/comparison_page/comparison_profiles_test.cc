@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -95,6 +98,39 @@ TEST(ComparisonPage, ProfilesAgainstADesignLieWhereTheyAreInAllShapes) {
       EXPECT_NEAR(a[i][1].get<double>(), b[i][1].get<double>(), 0.5) << profile["section"];
     }
   }
+}
+
+// Against a design, the reference has only the sections of the shape that it is compared with.
+TEST(ComparisonPage, AProfileThatTheFirstShapeLacksIsDrawn) {
+  const MeshDistance design(SailMesh());
+  ComparisonOptions options = WithDeflections();
+  options.alignment.method = AlignmentMethod::kNone;
+  const MarkerShape whole = Fuller(), holed = Without({32, 33, 34}, Fuller());
+  std::vector<std::set<std::string>> curves_of;
+  for (const bool whole_first : {true, false}) {
+    PageExample example;
+    example.is_design = true;
+    const auto add = [&](const std::string& name, const MarkerShape& shape) {
+      example.series.push_back(Compare(name, WithSigmas(shape), design, example.layout, options));
+    };
+    if (whole_first) add("whole", whole);
+    add("holed", holed);
+    if (!whole_first) add("whole", whole);
+    const Json data = example.Data();
+    std::set<std::string> curves;
+    std::vector<std::string> sections;
+    for (const Json& profile : data["profiles"]) {
+      sections.push_back(profile["section"].get<std::string>());
+      for (const Json& curve : profile["curves"]) {
+        curves.insert(sections.back() + " " + curve["name"].get<std::string>());
+      }
+    }
+    EXPECT_EQ(sections, (std::vector<std::string>{"h1", "h2", "h3", "h4", "h5"}));
+    curves_of.push_back(curves);
+  }
+  EXPECT_EQ(curves_of[0], curves_of[1]);
+  EXPECT_EQ(curves_of[0].count("h3 whole"), 1u);
+  EXPECT_EQ(curves_of[0].count("h3 holed"), 0u);
 }
 
 }  // namespace

@@ -66,6 +66,20 @@ TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
   }
 }
 
+TEST_F(MeshReaderTest, MeshesWhereFloatsAreTooCoarseAreRefused) {
+  const auto write = [&](const std::string& name, double easting_m) {
+    TriangleMesh mesh = SailMesh();
+    for (Eigen::Vector3d& x_m : mesh.vertices_m) x_m.x() += easting_m;
+    WriteFileAtomically(dir_ / name, [&](std::ostream& out) {
+      WriteMeshPly(mesh, "sail", PlyFormat::kBinaryLittleEndian, out);
+    });
+    return dir_ / name;
+  };
+  ExpectRefused(write("grid.ply", 5423456),
+                {"grid.ply", "steps of 647 mm", "a frame near the object, or as STEP"});
+  EXPECT_FALSE(ReadMesh(write("harbour.ply", 1000)).triangles.empty());  // with a warning
+}
+
 TEST_F(MeshReaderTest, StepAndIgesHaveTheirUnit) {
   const SplineSurface surface = FitSurface(MarkersOn(BilinearPatch, 4, 5)).surface;
   WriteFileAtomically(dir_ / "a.step", [&](std::ostream& out) { WriteStep(surface, "a", out); });

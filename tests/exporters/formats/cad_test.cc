@@ -168,6 +168,24 @@ TEST(Cad, UnitOfTheFileIsObeyed) {
   EXPECT_NEAR(Area(mesh), 1e6 * SurfaceArea(surface), 1e5 * SurfaceArea(surface));
 }
 
+// As in the frame of a national grid, where ten digits are tenths of a millimetre.
+TEST(Cad, FarFromTheOriginNothingIsLost) {
+  TempDir dir;
+  SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  const Eigen::RowVector3d origin_m(456789, 5423456, 312);
+  surface.poles_in_shape_m.rowwise() += origin_m;
+  WriteText(dir / "far.step", Step(surface));
+  WriteText(dir / "far.igs", Iges(surface));
+  for (const char* name : {"far.step", "far.igs"}) {
+    double largest_mm = 0;
+    for (const SurfaceFoot& foot :
+         ProjectOnSurface(surface, ReadCad(dir / name, kAnyChordMm).vertices_m)) {
+      largest_mm = std::max(largest_mm, 1000 * std::abs(foot.distance_m));
+    }
+    EXPECT_LT(largest_mm, 1e-3) << name;
+  }
+}
+
 TEST(Cad, SameSurfaceSameBytes) {
   const ScopedDate date("1700000000");
   const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;

@@ -1,14 +1,18 @@
 #include "exporters/sail/sail_shape.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "exporters/scale/metric_shape.h"
+#include "exporters/shape_exporter.h"
 #include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
@@ -92,6 +96,51 @@ TEST(SailShape, FilesAreThoseThatItNames) {
   const int main_id = sails.layout.parts[0].horizontal[0].marker_ids[0];
   EXPECT_THAT(step, HasSubstr(fmt::format("CARTESIAN_POINT('{}'", main_id + 1000)));
   EXPECT_THAT(step, Not(HasSubstr(fmt::format("CARTESIAN_POINT('{}'", main_id))));
+}
+
+// Height of the middle of an edge.
+double EdgeHeight_m(const SailSurface& surface, const std::string& edge) {
+  std::vector<double> heights_m;
+  for (const SurfaceEdgePoint& point : surface.fit.edges) {
+    if (point.edge == edge) heights_m.push_back(point.x_in_shape_m.z());
+  }
+  return heights_m.at(heights_m.size() / 2);
+}
+
+TEST(SailShape, LayoutFromHeadToFootGivesTheSameSurface) {
+  Sail sail = ExampleSail();
+  LayoutPart& part = sail.layout.parts[0];
+  part.edges.foot.offsets_m = {0.1};
+  part.edges.head.offsets_m = {0.8};
+  const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
+  const SailShape foot_first = ComputeSail(sail.shape, frame, sail.layout, nullptr, {});
+  std::reverse(part.horizontal.begin(), part.horizontal.end());
+  for (MarkerLine& line : part.vertical) {
+    std::reverse(line.marker_ids.begin(), line.marker_ids.end());
+  }
+  const SailShape head_first = ComputeSail(sail.shape, frame, sail.layout, nullptr, {});
+  ASSERT_EQ(head_first.surfaces.size(), 1u);
+  const SailSurface &a = foot_first.surfaces[0], &b = head_first.surfaces[0];
+  EXPECT_NEAR(a.area_m2, b.area_m2, 1e-9);
+  for (const char* edge : {"foot", "head", "luff", "leech"}) {
+    EXPECT_NEAR(EdgeHeight_m(a, edge), EdgeHeight_m(b, edge), 1e-9) << edge;
+  }
+  EXPECT_NEAR(EdgeHeight_m(b, "foot"), -0.1, 0.02);
+}
+
+TEST(SailShape, StlFilesThatAreTooCoarseAndLinesFromTheHeadAreWarnedOf) {
+  Sail sail = ExampleSail();
+  sail.layout.parts[0].vertical.clear();
+  ShapeExportReport report;
+  report.shape = sail.shape;
+  report.sail = Compute(sail);
+  EXPECT_THAT(FrameWarnings(report, sail.layout, true), IsEmpty());
+  for (Eigen::Vector3d& x_m : report.sail.surfaces[0].mesh.vertices_m) x_m.y() += 5e6;
+  EXPECT_THAT(FrameWarnings(report, sail.layout, true),
+              ElementsAre(HasSubstr("have steps of 596 mm; give known_points from an origin")));
+  EXPECT_THAT(FrameWarnings(report, sail.layout, false), IsEmpty());
+  std::reverse(sail.layout.parts[0].horizontal.begin(), sail.layout.parts[0].horizontal.end());
+  EXPECT_THAT(FrameWarnings(report, sail.layout, false), ElementsAre(HasSubstr("upside down")));
 }
 
 TEST(SailShape, SaysWhyThereIsNoSurface) {

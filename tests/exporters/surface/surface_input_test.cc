@@ -1,6 +1,8 @@
 #include "exporters/surface/surface_input.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +56,57 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
             "leech: 1 of the markers of its line v1 are whole, 2 needed; the surface ends at the "
             "outer markers of the other lines");
   EXPECT_EQ(one.luff_note, "");
+}
+
+// Two lines of three markers; the vertical line, if there is one, runs from `vertical`'s first.
+LayoutPart TwoLines(const std::vector<int>& vertical) {
+  LayoutPart part;
+  part.horizontal = {{"low", {1, 2, 3}}, {"high", {11, 12, 13}}};
+  part.vertical = {{"v1", vertical}};
+  part.edges.leech.line = "v1";
+  part.edges.luff.offsets_m = {0.05, 0.07};
+  part.edges.foot.offsets_m = {0.1};
+  part.edges.head.offsets_m = {0.8};
+  return part;
+}
+
+MarkerShape ShapeOfTwoLines() {
+  MarkerShape shape;
+  for (const int id : {1, 2, 3, 11, 12, 13}) {
+    ShapeMarker marker;
+    marker.marker_id = id;
+    marker.x_in_shape_m.fill(Eigen::Vector3d(id % 10, 0, 2.0 * (id / 10)));
+    shape.markers.push_back(marker);
+  }
+  return shape;
+}
+
+TEST(SurfaceInput, LinesFromHeadToFootGiveTheSameInput) {
+  const MarkerShape shape = ShapeOfTwoLines();
+  const LayoutPart part = TwoLines({3, 13});
+  LayoutPart head_first = TwoLines({13, 3});
+  std::reverse(head_first.horizontal.begin(), head_first.horizontal.end());
+  std::reverse(head_first.edges.luff.offsets_m.begin(), head_first.edges.luff.offsets_m.end());
+  for (const LayoutPart& each : {part, head_first}) {
+    const SurfaceInput input = CollectSurfaceInput(shape, each, Eigen::Vector3d::UnitZ());
+    EXPECT_EQ(input.lines[0].name, "low");
+    EXPECT_EQ(input.lines[1].name, "high");
+    EXPECT_EQ(input.lines[0].luff_offset_m, 0.05);
+    EXPECT_EQ(input.lines[1].luff_offset_m, 0.07);
+    EXPECT_EQ(input.foot_offset_m, 0.1);
+    EXPECT_EQ(input.head_offset_m, 0.8);
+    EXPECT_EQ(input.edges.leech.front(), Eigen::Vector3d(3, 0, 0));
+    EXPECT_EQ(input.edges.leech.back(), Eigen::Vector3d(3, 0, 2));
+  }
+}
+
+TEST(SurfaceInput, WithoutUpTheVerticalLinesTellFootFromHead) {
+  LayoutPart part = TwoLines({3, 13});
+  std::reverse(part.horizontal.begin(), part.horizontal.end());
+  EXPECT_EQ(CollectSurfaceInput(ShapeOfTwoLines(), part).lines[0].name, "low");
+  // Without any, the order of the layout holds.
+  part.vertical.clear();
+  EXPECT_EQ(CollectSurfaceInput(ShapeOfTwoLines(), part).lines[0].name, "high");
 }
 
 }  // namespace

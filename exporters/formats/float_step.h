@@ -1,0 +1,21 @@
+// How much of a place a 32-bit float can tell apart: STL files hold such floats, and meshes are
+// read through them.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace velamap {
+
+// A coarser step is worth a word.
+inline constexpr double kMaxFloatStep_m = 1e-5;
+
+// Distance between neighbouring floats at the coordinate that is farthest from the origin, m, where
+// it exceeds kMaxFloatStep_m and what the same points would have in a frame that begins at one of
+// them; otherwise nothing. It is the same in any unit of length.
+std::optional<double> CoarseFloatStep_m(const std::vector<Eigen::Vector3d>& points_m);
+
+}  // namespace velamap
