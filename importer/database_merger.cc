@@ -80,7 +80,8 @@ std::string DifferenceOf(const PartContent& a, const PartContent& b) {
   if (!(a.record.whole == b.record.whole)) return "the frames of the whole import differ";
   if (a.record.detector != b.record.detector) {
     return fmt::format("other detection options, another layout or another prior shape ({}; {})",
-                       a.record.detector, b.record.detector);
+                       SettingsThatDiffer(a.record.detector, b.record.detector),
+                       SettingsThatDiffer(b.record.detector, a.record.detector));
   }
   // Only compares whether there is one: machines differ in the last digits of its values.
   if (a.formation.has_value() != b.formation.has_value()) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include "importer/base/replacement.h"
 #include "importer/database/source_table.h"
 #include "importer/frame_camera.h"
+#include "importer/track/frame_detector.h"
 #include "importer/video/frame_source.h"
 #include "importer/video/source_file.h"
 #include "importer/video/written_frame.h"
@@ -135,7 +137,8 @@ void CheckSameSettings(const MarkerImporterOptions& options, const std::string& 
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
                     "another prior shape ({}; this run has {}); {}",
-                    options.database_path, *known_detector, detector, kImportAnewRemedy));
+                    options.database_path, SettingsThatDiffer(*known_detector, detector),
+                    SettingsThatDiffer(detector, *known_detector), kImportAnewRemedy));
   }
   if (!options.camera && database.HasCalibration() && !database.ReadCameras().empty()) {
     throw InputError(
@@ -210,6 +213,18 @@ void CheckPixelAspect(const MarkerImporterOptions& options) {
       "to be square; make them square with ffmpeg -i VIDEO -vf scale=iw*sar:ih,setsar=1 -crf 12 "
       "square.mp4, or give --camera_path with a calibration from such pictures",
       options.image_path, pixel_aspect));
+}
+
+void CheckCalibrationSize(const MarkerImporterOptions& options) {
+  if (!options.camera) return;
+  const std::unique_ptr<FrameSource> source =
+      OpenFrameSource(options.image_path, options.video, {}, options.num_threads);
+  while (std::optional<Frame> frame = source->Next()) {
+    std::string reason;
+    if (!source->Load(&*frame, &reason)) continue;
+    CameraOfFrame(options, source->IsVideo(), *frame);
+    return;
+  }
 }
 
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,

@@ -39,6 +39,10 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
 // Throws InputError if the pixels of a video are not square and no calibration describes them.
 void CheckPixelAspect(const MarkerImporterOptions& options);
 
+// Throws InputError if the calibration is for another size than the first frame that can be read,
+// as the import of each frame does: before the estimate of camera and print, which takes long.
+void CheckCalibrationSize(const MarkerImporterOptions& options);
+
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
 // With a wrong dictionary or polarity, false ids are found, most of which the layout does not name.
 // The suggestion of another dictionary therefore comes before any complaint about ids.

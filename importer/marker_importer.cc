@@ -39,12 +39,13 @@ std::string ProgressLine(const FrameResult& result) {
 // Returns the estimate in the database, so that later frames are treated like the first ones. If
 // there is none, makes one, adds it to the database, and adds the time to `time`.
 FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
-                              const ProgressCallback& progress, ColmapDatabase* database,
+                              const ImportProgress& progress, ColmapDatabase* database,
                               BusyTime* time) {
   if (const auto known = database->ReadFormation()) return *known;
   const ProcessTimer timer;
-  const FormationEstimate estimate = EstimateFormationOfSource(
-      options.image_path, options.video, options.num_threads, detector, progress);
+  const FormationEstimate estimate =
+      EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector,
+                                {progress.sampling, progress.formation});
   database->WriteFormation(estimate);
   TakeStageTimes();  // drops what the search for samples charged to other stages
   *time = timer.Elapsed();
@@ -157,8 +158,9 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
                                    detector.options.estimate_formation;
   BusyTime formation_time;
   if (estimates_formation) {
+    if (frames && known_names.empty()) CheckCalibrationSize(options);
     detector.formation = ImageFormation(
-        FormationOf(options, detector, progress.formation, &database, &formation_time).parameters);
+        FormationOf(options, detector, progress, &database, &formation_time).parameters);
   }
   RecordPart(options, DescribeDetector(detector), false, &database);
   ImportReport report;
@@ -188,6 +190,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ImportPro
       options.chessboard ? MakeChessboardDetector(*options.chessboard)
                          : MakeFrameDetector(options.layout, detection, options.prior_shape);
   const std::optional<VideoOptions> frames = FramesToSearch(options);
+  CreateFolders(CanonicalPath(options.database_path).parent_path());
   const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
   CompleteReplacement(options.database_path);
   if (!options.import_anew || !Exists(options.database_path)) {

@@ -79,6 +79,7 @@ struct ImportReport {
 };
 
 struct ImportProgress {
+  ProgressCallback sampling;   // of the frames for the estimate of camera and print; any thread
   ProgressCallback formation;  // of the estimate of camera and print; from any thread
   ProgressCallback frames;     // of the frames that are searched for markers
 };

@@ -8,6 +8,10 @@
 # sanitize 3 GB, because they compile more files at once).
 set -euo pipefail
 
+case "${1:-}" in
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+  -*) echo "error: $1: unknown option; give a preset such as release" >&2; exit 2 ;;
+esac
 preset="${1:?usage: $0 PRESET [TARGET]}"
 target=(${2:+--target "$2"})
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -10,6 +10,7 @@ preset="${VELAMAP_PRESET:-release}"
 try=0 package=""
 case "${1:-}" in
   "") ;;
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
   --try) try=1 package="${2:+$(realpath -e "$2")}" ;;
   *) echo "usage: $0 [--try [DEB]]" >&2; exit 2 ;;
 esac

@@ -32,6 +32,7 @@ inputs=()
 while [[ $# -gt 0 && "$1" != -- ]]; do
   case "$1" in
     --output_path) output_path="${2:-}"; shift 2 || fail "--output_path needs a folder" ;;
+    --output_path=*) output_path="${1#*=}"; shift ;;
     --keep_going) keep_going=1; shift ;;
     --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
     --*) fail "$1: unknown option; options of velamap go after --" ;;
@@ -44,6 +45,8 @@ done
 for option in "$@"; do
   case "$option" in
     --summary | --summary=* | --help | --help_all | -h) fail "$option: not for a batch; leave it out" ;;
+    --image_path | --image_path=* | --workspace_path | --workspace_path=*)
+      fail "$option: a batch gives it itself for each input; leave it out" ;;
   esac
 done
 

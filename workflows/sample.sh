@@ -6,6 +6,10 @@
 # VELAMAP_PRESET: the build; default release. VELAMAP: an existing program to use instead of a build.
 set -euo pipefail
 
+case "${1:-}" in
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+  -*) echo "error: $1: unknown option; give the folder of the workspaces" >&2; exit 2 ;;
+esac
 folder="$(realpath --canonicalize-missing "${1:-workspace}")"
 preset="${VELAMAP_PRESET:-release}"
 velamap="${VELAMAP:-}"

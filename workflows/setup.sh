@@ -28,6 +28,7 @@ test_packages=(
 
 case "${1:-}" in
   "") ;;
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
   --with-clang) packages+=("${clang_packages[@]}") ;;
   --with-tests) packages+=("${clang_packages[@]}" "${test_packages[@]}") ;;
   *) echo "usage: $0 [--with-clang | --with-tests]" >&2; exit 2 ;;

@@ -6,6 +6,9 @@
 # VELAMAP_COLMAP: the COLMAP that the tests run; default the one on the PATH.
 set -euo pipefail
 
+case "${1:-}" in
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+esac
 preset="${VELAMAP_PRESET:-release}"
 colmap="${VELAMAP_COLMAP:-}"
 if [[ -n "$colmap" ]]; then

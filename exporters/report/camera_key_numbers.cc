@@ -1,6 +1,7 @@
 #include "exporters/report/camera_key_numbers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -42,8 +43,9 @@ std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
       "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1 "
       "--BundleAdjustment.refine_extra_params 1";
   if (is_focal) {
-    what = fmt::format("its focal length is {:+.1f} % off",
-                       100 * (1 / (1 + evidence.focal_change) - 1));
+    const double off_percent = 100 * (1 / (1 + evidence.focal_change) - 1);
+    what = fmt::format("its focal length is {:.1f} % too {}", std::abs(off_percent),
+                       off_percent > 0 ? "large" : "small");
     command = "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1";
   } else if (is_distortion) {
     what = "its distortion is wrong or missing";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -94,6 +95,14 @@ std::string PercentText(double value, const std::optional<double>& sigma) {
   return text + " %";
 }
 
+// The difference from what `sigmas_off` of the marker compares it with, as a fraction: the mean of
+// all markers, or of those of its part where parts disagree.
+double DifferenceFromOthers(const MarkerScale& marker, const ScaleAudit& audit) {
+  if (!audit.parts_disagree) return (1 + marker.deviation) / (1 + audit.deviation) - 1;
+  return std::expm1(marker.sigmas_off *
+                    std::hypot(marker.sigma.value_or(0.0), audit.marker_spread));
+}
+
 void PrintDisagreeingMarkers(const ScaleAudit& audit, std::ostream& out) {
   constexpr std::size_t kMaxMarkers = 5;
   std::vector<const MarkerScale*> markers = DisagreeingMarkers(audit);
@@ -103,8 +112,10 @@ void PrintDisagreeingMarkers(const ScaleAudit& audit, std::ostream& out) {
   out << fmt::format("scale_disagreeing_markers: {} of {}", markers.size(), audit.markers.size());
   const std::size_t num_named = std::min(markers.size(), kMaxMarkers);
   for (std::size_t i = 0; i < num_named; ++i) {
-    out << fmt::format("{} {} by {:+.2f} %", i == 0 ? ":" : ",", markers[i]->marker_id,
-                       100.0 * markers[i]->deviation);
+    const std::string_view others =
+        audit.parts_disagree ? "; against those of their part:" : "; against the others:";
+    out << fmt::format("{} {} by {:+.2f} %", i == 0 ? others : ",", markers[i]->marker_id,
+                       100.0 * DifferenceFromOthers(*markers[i], audit));
   }
   out << (markers.size() > kMaxMarkers ? ", ...\n" : "\n");
 }

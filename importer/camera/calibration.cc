@@ -47,6 +47,18 @@ int ReadImageSize(const cv::FileStorage& storage, const std::string& path, const
   return static_cast<int>(size);
 }
 
+// ": 9 numbers are expected, 13 found; ..." for a matrix with another number of them than its size
+// says, as decimal commas cause; else empty.
+std::string NumbersText(const cv::FileNode& matrix) {
+  if (!matrix.isMap()) return "";
+  const cv::FileNode data = matrix["data"];
+  const auto num_expected = static_cast<std::size_t>(static_cast<int>(matrix["rows"])) *
+                            static_cast<std::size_t>(static_cast<int>(matrix["cols"]));
+  if (!data.isSeq() || data.size() == num_expected) return "";
+  return fmt::format(": {} are expected, {} found; write decimal points, not decimal commas",
+                     num_expected, data.size());
+}
+
 std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path,
                                const std::string& key) {
   cv::Mat matrix;
@@ -75,8 +87,8 @@ std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path
     }
   } catch (const cv::Exception&) {
     Fail(path, fmt::format("key '{}': not a readable matrix; a list of numbers is expected, or "
-                           "rows, cols, dt: d and as many numbers as data",
-                           key));
+                           "rows, cols, dt: d and as many numbers as data{}",
+                           key, NumbersText(node)));
   }
   for (const double value : values) {
     if (!std::isfinite(value)) Fail(path, fmt::format("key '{}': a value is not finite", key));
@@ -89,7 +101,8 @@ std::vector<double> ReadPinholeParams(const cv::FileStorage& storage, const std:
   const std::string key = "camera_matrix";
   const std::vector<double> k = ReadMatrix(RequireKey(storage, path, key), path, key);
   if (k.size() != 9) {
-    Fail(path, fmt::format("key '{}': expected 3x3 values, found {}", key, k.size()));
+    Fail(path, fmt::format("key '{}': expected 3x3 values, found {}{}", key, k.size(),
+                           k.size() > 9 ? "; write decimal points, not decimal commas" : ""));
   }
   const bool affine = k[3] == 0 && k[6] == 0 && k[7] == 0 && k[8] == 1;
   if (!affine || k[1] != 0) {
@@ -201,19 +214,26 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
   return *camera;
 }
 
-// Rejects values that no real camera has, because later steps would fail and blame other input.
+// Rejects values that no real camera has, because later steps would fail and blame other input. The
+// image circle of a fisheye camera of 220 degrees has 0.26 of its diameter as the focal length.
 void CheckRangeOfParams(const Camera& camera, const std::string& path) {
-  constexpr double kMaxSides = 1e4;
+  constexpr double kMaxSides = 1e4, kMinFocalSides = 0.1, kMaxFocalSides = 50;
   const double side_px = std::max(camera.width_px, camera.height_px);
   const std::size_t num_focal = NumFocalLengths(camera.model);
   for (std::size_t i = 0; i < num_focal + 2; ++i) {
     const double value_px = camera.params[i];
-    const bool is_small = i < num_focal && value_px * kMaxSides < side_px;
-    if (std::abs(value_px) <= kMaxSides * side_px && !is_small) continue;
-    Fail(path, fmt::format("a {} of {:g} px is out of range for pictures of {} x {} px; check the "
-                           "calibration",
-                           i < num_focal ? "focal length" : "principal point", value_px,
-                           camera.width_px, camera.height_px));
+    if (i >= num_focal) {
+      if (std::abs(value_px) <= kMaxSides * side_px) continue;
+      Fail(path, fmt::format("a principal point of {:g} px is out of range for pictures of {} x {} "
+                             "px; check the calibration",
+                             value_px, camera.width_px, camera.height_px));
+    }
+    const double min_px = kMinFocalSides * side_px, max_px = kMaxFocalSides * side_px;
+    if (value_px >= min_px && value_px <= max_px) continue;
+    Fail(path, fmt::format("a focal length of {:g} px is out of range for pictures of {} x {} px, "
+                           "{:g} to {:g} px; give it in px, not in mm, and the size of the "
+                           "pictures that it was found from, or leave --camera_path out",
+                           value_px, camera.width_px, camera.height_px, min_px, max_px));
   }
 }
 

@@ -110,9 +110,15 @@ std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv:
 struct SampledSource {
   const FrameDetector& detector;
   int num_threads;
-  const ProgressCallback& progress;  // of the frames
+  std::function<void()> count;  // called after each frame; may be empty
   FrameSource* frames;
 };
+
+constexpr int kMaxPhotographs = 32;
+
+int StrideOfPhotographs(int num_images) {
+  return std::max(1, (num_images + kMaxPhotographs - 1) / kMaxPhotographs);
+}
 
 // Calls `progress` with one more of `total` at each call, from any thread.
 std::function<void()> Counter(const ProgressCallback& progress, int total) {
@@ -133,14 +139,13 @@ bool SampleFrames(const SampledSource& source, int num_frames, int stride, const
     if (has_more && idx % stride == 0) frames.push_back(std::move(*frame));
   }
   std::vector<std::vector<FormationSample>> samples_of(frames.size());
-  const std::function<void()> count = Counter(source.progress, static_cast<int>(frames.size()));
   ParallelFor(frames.size(), source.num_threads, [&](std::size_t i) {
     Frame frame = std::move(frames[i]);
     std::string reason;
     if (source.frames->Load(&frame, &reason)) {
       samples_of[i] = CutSamples(source.detector, frame.gray, quota);
     }
-    if (count) count();
+    if (source.count) source.count();
   });
   for (std::vector<FormationSample>& some : samples_of) {
     std::move(some.begin(), some.end(), std::back_inserter(*samples));
@@ -167,15 +172,13 @@ std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   return samples;
 }
 
-// Samples all photographs if there are at most 32, otherwise every k-th in the order of their
-// names.
+// Samples all photographs if there are at most kMaxPhotographs, otherwise every k-th in the order
+// of their names.
 std::vector<FormationSample> SamplePhotographs(const SampledSource& source) {
-  constexpr int kMaxFrames = 32;
   const int num_images = std::max(1, source.frames->NumFrames());
-  const int stride = (num_images + kMaxFrames - 1) / kMaxFrames;
   std::vector<FormationSample> samples;
-  SampleFrames(source, kMaxFrames, stride, QuotaOfFrame(std::min(num_images, kMaxFrames)),
-               &samples);
+  SampleFrames(source, kMaxPhotographs, StrideOfPhotographs(num_images),
+               QuotaOfFrame(std::min(num_images, kMaxPhotographs)), &samples);
   return samples;
 }
 
@@ -184,11 +187,14 @@ std::vector<FormationSample> SamplePhotographs(const SampledSource& source) {
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector,
-                                            const ProgressCallback& progress) {
+                                            const FormationProgress& progress) {
   // May take longer than the detection in a few photographs.
   LogInfo("looking for markers that show what camera and print do to edges");
   const std::unique_ptr<FrameSource> frames = OpenFrameSource(image_path, video, {}, num_threads);
-  const SampledSource source{detector, num_threads, progress, frames.get()};
+  const int stride = StrideOfPhotographs(frames->NumFrames());
+  const int num_sampled = frames->IsVideo() ? 0 : (frames->NumFrames() + stride - 1) / stride;
+  const SampledSource source{detector, num_threads, Counter(progress.frames, num_sampled),
+                             frames.get()};
   std::vector<FormationSample> samples =
       frames->IsVideo() ? SampleVideo(source) : SamplePhotographs(source);
   // Sums in single precision depend on their order, which the names of photographs decide.
@@ -202,7 +208,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   }
   const FormationEstimate estimate = EstimateFormation(
       samples, detector.options.inverted,
-      {num_threads, Counter(progress, kUsualFits * static_cast<int>(samples.size()))});
+      {num_threads, Counter(progress.fits, kUsualFits * static_cast<int>(samples.size()))});
   if (estimate.num_samples == 0) {
     LogWarning(
         "{}: too few markers are large and sharp enough to show what the camera does to edges; its "

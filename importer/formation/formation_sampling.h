@@ -12,14 +12,19 @@
 
 namespace velamap {
 
+// Both are called from any thread.
+struct FormationProgress {
+  ProgressCallback frames;  // their number is unknown for a video
+  ProgressCallback fits;    // of markers; their number is only estimated
+};
+
 // Estimates the image formation from about 32 markers: of up to 32 photographs of the folder, or of
 // every fifth frame at the beginning of a video, and of later ones while too few markers are found.
 // The video is read again for the import. The parameters are the defaults, with the inset that an
-// unknown camera may cause, if fewer than two markers can be fitted. `progress` is called from any
-// thread: with the frames, and then with the fits of markers, whose number is only estimated.
+// unknown camera may cause, if fewer than two markers can be fitted.
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector,
-                                            const ProgressCallback& progress = {});
+                                            const FormationProgress& progress = {});
 
 }  // namespace velamap

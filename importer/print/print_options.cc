@@ -67,8 +67,8 @@ OptionGroup DescribeOptions(PrintOptions* options) {
        Common({"num_markers", &options->num_markers, "count", "markers: how many",
                FromTo(0, kMaxMarkerId + 1)}),
        {"first_id", &options->first_id, "id", "id of the first marker", FromTo(0, kMaxMarkerId)},
-       {"ids", ParsedValue{&options->ids, "", set_ids}, "ids",
-        "print only these, such as those that were lost: 3,17,20-25"}}};
+       Common({"ids", ParsedValue{&options->ids, "", set_ids}, "ids",
+               "print only these, such as those that were lost: 3,17,20-25"})}};
 }
 
 void PrintOptions::Check() const {
@@ -99,7 +99,10 @@ void PrintOptions::Check() const {
                 "it is for --arrangement sail");
   }
   if (arrangement != Arrangement::kMarkers && num_markers > 0) {
-    ThrowSuperfluous("--num_markers", "it is for --arrangement markers");
+    ThrowSuperfluous("--num_markers",
+                     fmt::format("it is for --arrangement markers; the number of markers on a hull "
+                                 "is {}",
+                                 OptionName(&SailPlacementOptions::hull_markers)));
   }
   if (sail.hull_markers > 0 && (arrangement == Arrangement::kMarkers || IsBoard(arrangement))) {
     ThrowSuperfluous(OptionName(&SailPlacementOptions::hull_markers),

@@ -1,6 +1,7 @@
 #include "importer/track/frame_detector.h"
 
 #include <iterator>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -136,6 +137,17 @@ std::string DescribeDetector(const FrameDetector& detector) {
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
       detector.options.inverted ? 1 : 0, DescribeLayout(detector, detector.options.search), search);
+}
+
+std::string SettingsThatDiffer(const std::string& description, const std::string& other) {
+  const std::string others = " " + other + " ";
+  std::istringstream settings(description);
+  std::string text;
+  for (std::string setting; settings >> setting;) {
+    if (others.find(" " + setting + " ") != std::string::npos) continue;
+    text += (text.empty() ? "" : " ") + setting;
+  }
+  return text.empty() ? "none of these" : text;
 }
 
 bool IsOfLayout(const std::string& description, const FrameDetector& detector) {

@@ -80,6 +80,10 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
 // enter as a checksum.
 std::string DescribeDetector(const FrameDetector& detector);
 
+// The settings of `description` that `other` does not have, both made by DescribeDetector(); "none
+// of these" if there are none.
+std::string SettingsThatDiffer(const std::string& description, const std::string& other);
+
 // Whether `description`, which DescribeDetector() has made, is of the dictionary and the layout of
 // `detector`; its options may differ.
 bool IsOfLayout(const std::string& description, const FrameDetector& detector);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/camera_conversion.h"
@@ -196,17 +197,26 @@ std::string DescribeRefinement(const Camera& calibration, const Camera& refined)
   const std::size_t num_focal = NumFocalLengths(refined.model);
   const std::vector<double>& from = calibration.params;
   const std::vector<double>& to = refined.params;
-  std::string text = fmt::format(
-      "focal length {:.1f} -> {:.1f} px, principal point ({:.1f}, {:.1f}) -> ({:.1f}, {:.1f}) px",
-      MeanFocalLength(calibration), MeanFocalLength(refined), from[num_focal], from[num_focal + 1],
-      to[num_focal], to[num_focal + 1]);
-  if (to.size() > num_focal + 2) {
-    const auto begin = static_cast<std::ptrdiff_t>(num_focal) + 2;
-    text += fmt::format(", distortion {:.4g} -> {:.4g}",
-                        fmt::join(from.begin() + begin, from.end(), " "),
-                        fmt::join(to.begin() + begin, to.end(), " "));
+  const auto center = static_cast<std::ptrdiff_t>(num_focal);
+  const auto has_changed = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return !std::equal(from.begin() + begin, from.begin() + end, to.begin() + begin);
+  };
+  std::vector<std::string> changes;
+  if (has_changed(0, center)) {
+    changes.push_back(fmt::format("focal length {:.1f} -> {:.1f} px", MeanFocalLength(calibration),
+                                  MeanFocalLength(refined)));
   }
-  return text;
+  if (has_changed(center, center + 2)) {
+    changes.push_back(fmt::format("principal point ({:.1f}, {:.1f}) -> ({:.1f}, {:.1f}) px",
+                                  from[num_focal], from[num_focal + 1], to[num_focal],
+                                  to[num_focal + 1]));
+  }
+  if (has_changed(center + 2, static_cast<std::ptrdiff_t>(to.size()))) {
+    changes.push_back(fmt::format("distortion {:.4g} -> {:.4g}",
+                                  fmt::join(from.begin() + center + 2, from.end(), " "),
+                                  fmt::join(to.begin() + center + 2, to.end(), " ")));
+  }
+  return fmt::format("{}", fmt::join(changes, ", "));
 }
 
 }  // namespace velamap

@@ -86,7 +86,8 @@ FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const Intrinsics
 // of its first parameter would.
 bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera);
 
-// Describes the change in a message: "focal length 901.3 -> 875.1 px, ...".
+// Describes in a message what has changed: "focal length 901.3 -> 875.1 px, ...". Both cameras have
+// the same model.
 std::string DescribeRefinement(const Camera& calibration, const Camera& refined);
 
 }  // namespace velamap

@@ -122,8 +122,8 @@ void DropWrongSizes(GlobalRegistration* global) {
     const double ratio = places.front().scale / median_scale;
     if (ratio < kMaxSizeRatio && ratio > 1 / kMaxSizeRatio) continue;
     global->Drop(static_cast<int>(idx),
-                 fmt::format("its side is {:.2f} times as long as marker_length: a wrong "
-                             "length in the layout, or a false square with its id",
+                 fmt::format("its side is {:.2f} times as long as marker_length: a "
+                             "marker of another size, or a false square with its id",
                              ratio));
     global->dropped_markers[static_cast<int>(idx)].size_ratio = ratio;
   }

@@ -69,7 +69,7 @@ std::vector<BadInput> Markers() {
              "%YAML:1.0\n---\nnmarkers: 1\nmarkersize: 3\nmaxCorrectionBits: 0\nmarker_0: "
              "\"1010\"\n")},
       {"NoDictionary", MainJob("grey", "camera.yml", "--marker_length 0.1"), 2,
-       "--layout_path: missing"},
+       "--dictionary: missing"},
       {"LayoutAndItsReplacement",
        MainJob("grey", "camera.yml", "--layout_path @/nowhere.yml --marker_length 0.1"), 2,
        "leave out"},

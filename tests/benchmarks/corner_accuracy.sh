@@ -6,6 +6,11 @@
 set -euo pipefail
 export LC_ALL=C
 
+case "${1:-}" in
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+  -*) echo "error: $1: unknown option; give a work folder" >&2; exit 2 ;;
+esac
+
 repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 program="${BUILD:-$repository/build/release}/tests/tools/corner_accuracy"
 work="${1:-workspace/compare}"

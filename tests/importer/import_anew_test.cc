@@ -85,7 +85,7 @@ TEST_F(ImportAnewTest, ThatFailsLeavesTheEarlierImport) {
   const auto fail = [](int done, int, const std::string&) {
     if (done == 3) throw std::bad_alloc();
   };
-  EXPECT_THROW(ImportMarkers(options_, {{}, fail}), std::bad_alloc);
+  EXPECT_THROW(ImportMarkers(options_, {{}, {}, fail}), std::bad_alloc);
   EXPECT_TRUE(Result() == earlier);
 }
 

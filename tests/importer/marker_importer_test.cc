@@ -33,7 +33,7 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
     const std::lock_guard<std::mutex> lock(mutex);
     ++calls_by_total[total];
   };
-  const ImportReport report = ImportMarkers(options_, {count_formation, count});
+  const ImportReport report = ImportMarkers(options_, {count_formation, count_formation, count});
   EXPECT_THAT(done, ElementsAre(0, 1, 2, 3));
   // The estimate of camera and print looks at all pictures, and then fits some of their markers.
   ASSERT_EQ(calls_by_total.size(), 2u);
@@ -252,6 +252,26 @@ TEST_F(MarkerImporterTest, ImageOfAnotherSizeNeedsAPureScale) {
   fs::remove(options_.database_path);
   ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"camera.yml", "300x300", "3.png"});
   EXPECT_FALSE(fs::exists(options_.database_path));
+}
+
+TEST_F(MarkerImporterTest, ACalibrationOfAnotherSizeIsRefusedBeforeTheEstimateOfCameraAndPrint) {
+  WritePicture("1.png", 0, {1, 2});
+  options_.camera->height_px = 320;
+  int num_calls = 0;
+  const auto count = [&](int, int, const std::string&) { ++num_calls; };
+  ExpectThrows<InputError>(
+      [&] {
+        ImportMarkers(options_, {count, count, count});
+      },
+      {"camera.yml", "320x200", "1.png"});
+  EXPECT_EQ(num_calls, 0);
+}
+
+TEST_F(MarkerImporterTest, MakesTheFolderOfTheDatabase) {
+  WritePicture("1.png", 0, {1, 2});
+  options_.database_path = dir_ / "work/a/database.db";
+  EXPECT_EQ(ImportMarkers(options_).num_images_added, 1);
+  EXPECT_TRUE(fs::is_regular_file(options_.database_path));
 }
 
 }  // namespace

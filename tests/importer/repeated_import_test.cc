@@ -189,7 +189,8 @@ TEST_F(MarkerImporterTest, OtherWayOfDetectionOrCameraIsRefused) {
   MarkerImporterOptions other = options_;
   other.detection.error_correction_rate = 0.5;
   ExpectThrows<InputError>([&] { ImportMarkers(other); },
-                           {options_.database_path, "other detection options"});
+                           {options_.database_path, "other detection options",
+                            "(error_correction_rate=0.3; this run has error_correction_rate=0.5)"});
   other = options_;
   LayoutPart part;
   part.name = "sail";

@@ -67,4 +67,16 @@ VELAMAP="$folder/no_such_velamap" "$repository/workflows/run_batch.sh" --output_
   first.mp4 2>log.txt || code=$?
 [[ $code -eq 2 && ! -e "$folder/new" ]] || fail "exit $code without the program that VELAMAP names"
 grep -q '^error: VELAMAP: .*no_such_velamap is not a program' log.txt || fail "$(cat log.txt)"
+
+# refused TEXT ARGUMENT...: exit 2 with the text, before anything is made.
+refused() {
+  local text="$1" code=0
+  shift
+  "$repository/workflows/run_batch.sh" "$@" >out.txt 2>log.txt || code=$?
+  [[ $code -eq 2 && ! -e "$folder/new" ]] || fail "exit $code of $*"
+  grep -q -e "$text" log.txt || fail "$* says: $(cat log.txt)"
+}
+refused "no input given" --output_path=new
+refused "--workspace_path: a batch gives it itself" --output_path=new first.mp4 -- --workspace_path w
+refused "--image_path=a: a batch gives it itself" --output_path=new first.mp4 -- --image_path=a
 exit "$status"

@@ -17,4 +17,7 @@ if(BASH_PROGRAM)
   add_test(NAME studies.readmes
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/readmes_test.sh ${PROJECT_SOURCE_DIR})
   set_tests_properties(studies.readmes PROPERTIES LABELS unit TIMEOUT 300)
+  add_test(NAME workflows.script_help
+           COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/script_help_test.sh ${PROJECT_SOURCE_DIR})
+  set_tests_properties(workflows.script_help PROPERTIES LABELS unit TIMEOUT 60)
 endif()

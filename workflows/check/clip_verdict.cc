@@ -16,6 +16,12 @@ constexpr double kMinContrast = 60.0, kMaxWhite = 250.0;
 constexpr double kMaxShareWithFewMarkers = 0.3;
 constexpr int kRarelySeen = 3;
 
+constexpr char kLargerMarkers[] = "go closer, film at a higher resolution, or print larger markers";
+
+std::string SmallMarkersText(const ClipFacts& facts) {
+  return fmt::format("half of the markers are smaller than {:.1f} px", facts.side_px.median);
+}
+
 class Judge {
  public:
   explicit Judge(const ClipFacts& facts) : facts_(facts) {}
@@ -86,19 +92,8 @@ class Judge {
 
   void JudgeSize() {
     if (facts_.side_px.count == 0) return;
-    const double side_px = facts_.side_px.median;
-    const std::string text = fmt::format("half of the markers are smaller than {:.0f} px", side_px);
-    const std::string remedy = "go closer, film at a higher resolution, or print larger markers";
-    if (side_px < kBadSidePx) {
-      reasons_.Bad(text + ": " + remedy);
-    } else if (side_px < kGoodSidePx) {
-      // The reconstruction of these frames knows better than the rule of thumb.
-      const std::string size =
-          facts_.precision
-              ? fmt::format("the size is known to {:.2f} % (1 sigma) from these frames",
-                            100 * facts_.precision->scale_sigma)
-              : "the size may be known only to a few tenths of a percent";
-      reasons_.Check(fmt::format("{}: {}; {}", text, size, remedy));
+    if (facts_.side_px.median < kBadSidePx) {
+      reasons_.Bad(fmt::format("{}: {}", SmallMarkersText(facts_), kLargerMarkers));
     }
   }
 
@@ -218,5 +213,17 @@ class Judge {
 }  // namespace
 
 Verdict JudgeClip(const ClipFacts& facts) { return Judge(facts).Take(); }
+
+std::string SizeHint(const ClipFacts& facts) {
+  const double side_px = facts.side_px.count == 0 ? 0.0 : facts.side_px.median;
+  if (side_px < kBadSidePx || side_px >= kGoodSidePx) return "";
+  // The reconstruction of these frames knows better than the rule of thumb.
+  const std::string size =
+      facts.precision ? fmt::format("the size is known to {:.2f} % (1 sigma) from these frames",
+                                    100 * facts.precision->scale_sigma)
+                      : "the size may be known only to a few tenths of a percent";
+  return fmt::format("{}, and below {:.0f} px more and more are lost; {}; for more of both, {}",
+                     SmallMarkersText(facts), kBadSidePx, size, kLargerMarkers);
+}
 
 }  // namespace velamap

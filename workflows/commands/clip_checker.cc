@@ -31,7 +31,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {
       "clip_checker",
-      "checks within seconds whether a clip is good enough to reconstruct",
+      "checks before a reconstruction whether a clip is good enough",
       "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
       "    --output_path frame.png --proposed_layout_path corrected.yml",
       {{"Input and output",
@@ -46,7 +46,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
          Common(PathOption(
              "proposed_layout_path", PathUse::kWritesOwnFile, &options->proposed_layout_path,
              "layout file with the parts, lines and lengths that the clip shows, or the "
-             "given layout corrected, which takes a minute; left out: none")),
+             "given layout corrected, which takes as long as a reconstruction; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
           "maximum number of frames of a video to look at, at equal distances over all of it",
           FromTo(5, 1000)}}},
@@ -130,18 +130,22 @@ void PrintWhatIsNotChecked(const ClipFacts& facts, std::ostream& out) {
 
 void Print(const ClipFacts& facts, std::ostream& out) {
   PrintVerdict(JudgeClip(facts), out);
+  if (const std::string hint = SizeHint(facts); !hint.empty()) {
+    WriteFormatted(out, "hint: {}\n", hint);
+  }
   PrintWhatIsNotChecked(facts, out);
   WriteFormatted(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
                  facts.num_frames, facts.width_px, facts.height_px);
   if (facts.dictionary.empty()) return;
   WriteFormatted(
       out, "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
-      facts.num_markers_found ? fmt::format(" (found: {} markers{})", *facts.num_markers_found,
-                                            facts.num_markers_of_second
-                                                ? fmt::format("; {}: {}", facts.second_dictionary,
-                                                              *facts.num_markers_of_second)
-                                                : "")
-                              : "");
+      facts.num_markers_found
+          ? fmt::format(
+                " (found by trying: {} detections{})", *facts.num_markers_found,
+                facts.num_markers_of_second
+                    ? fmt::format("; {}: {}", facts.second_dictionary, *facts.num_markers_of_second)
+                    : "")
+          : "");
   WriteFormatted(out, "markers_seen: {}\n", facts.num_frames_of_id.size());
   if (!facts.has_layout) {
     std::vector<int> ids;

@@ -52,7 +52,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
                  seed.image_names.size());
   WriteFormatted(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
   WriteFormatted(out, "markers_left_out: {}\n",
-                 LeftOutText(NamedById(seed.registration.dropped_markers)));
+                 LeftOutText(NamedById(seed.registration.dropped_markers), "marker"));
   WriteFormatted(out, "central_image: {}\n", seed.registration.central_image_name);
   WriteFormatted(out, "markers: {}\n", seed.registration.shape.size());
   WriteFormatted(out, "reprojection_error_px: {}\n",

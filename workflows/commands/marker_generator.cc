@@ -24,9 +24,9 @@ CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
             {Required(PathOption("output_path", PathUse::kWritesFolder, &options->paths.output_path,
                                  "folder for sheets.pdf, layout.yml, placement.svg and the like; "
                                  "new, empty, or as an earlier run left it")),
-             PathOption("layout_path", PathUse::kReadsLayout, &options->print.layout_path,
-                        "layout file (YAML) whose markers are printed, instead of an "
-                        "arrangement")}},
+             Common(PathOption("layout_path", PathUse::kReadsLayout, &options->print.layout_path,
+                               "layout file (YAML) whose markers are printed, instead of an "
+                               "arrangement"))}},
            DescribeOptions(&options->print),
            DescribeOptions(&options->print.sheet),
            DescribeOptions(&options->print.sail),

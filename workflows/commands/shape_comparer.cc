@@ -1,3 +1,4 @@
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "workflows/options/option_effects.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/progress.h"
 #include "workflows/run/version.h"
 
 namespace velamap {
@@ -191,8 +193,11 @@ void Validate(ShapeComparerCommandOptions* options) {
   CheckSeries(*options);
 }
 
+// Calls `progress` with the number of shapes that have been compared, from 0.
 std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, const Layout& layout,
+                                   const std::function<void(int)>& progress,
                                    std::optional<UncertainShape>* reference) {
+  progress(0);
   std::vector<std::string> paths = {options.paths.shape_path};
   paths.insert(paths.end(), options.series_paths.begin(), options.series_paths.end());
   const std::vector<std::string> names = NamesOfShapes(paths);
@@ -225,6 +230,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
     try {
       series.push_back(mesh ? Compare(names[i], shapes[i], *mesh, layout, comparison)
                             : Compare(names[i], shapes[i], *shared, layout, comparison));
+      progress(static_cast<int>(i) + 1);
     } catch (const DataError& error) {
       if (shapes.size() == 1) throw;
       throw DataError(fmt::format("{}: {}", paths[i], error.what()));
@@ -265,12 +271,17 @@ void Run(const ShapeComparerCommandOptions& options) {
   Layout layout;
   if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
   std::optional<UncertainShape> reference;
-  const std::vector<Comparison> series = CompareAll(options, layout, &reference);
+  const auto num_shapes = static_cast<int>(1 + options.series_paths.size());
+  const int num_steps = num_shapes + 1;  // the last one writes
+  Progress progress("comparing shapes");
+  const std::vector<Comparison> series = CompareAll(
+      options, layout, [&](int i) { progress.Update(i, num_steps, ""); }, &reference);
   const MetricsReport report = MakeComparisonReport(series);
   Write(options, series.front(), report);
   if (!options.comparison_path.empty()) {
     WriteComparisonFolder(options, layout, reference, series);
   }
+  ClearProgressLine();
   PrintMetrics(report, std::cout);
 }
 

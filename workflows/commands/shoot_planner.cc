@@ -19,6 +19,7 @@
 #include "workflows/options/shared_options.h"
 #include "workflows/plan/plan_drawing.h"
 #include "workflows/plan/plan_writer.h"
+#include "workflows/run/progress.h"
 
 namespace velamap {
 namespace {
@@ -150,7 +151,11 @@ void Run(const ShootPlannerCommandOptions& options) {
   if (!output_path.empty()) folder.emplace(output_path);
   const std::optional<Camera> calibration = LoadCalibration(options.paths);
   const Camera camera = calibration ? *calibration : CameraOfFieldOfView(options.plan);
-  const ShootPlan plan = MakeShootPlan(MakeSurface(options), camera, options.plan);
+  Progress progress("simulating paths");
+  const ShootPlan plan = MakeShootPlan(
+      MakeSurface(options), camera, options.plan,
+      [&](int done, int total, const std::string& what) { progress.Update(done, total, what); });
+  ClearProgressLine();
   if (folder) {
     WritePlan(plan, folder->TemporaryPath());
     folder->Commit();

@@ -11,6 +11,9 @@
 # VELAMAP: the program; the default is that of build/release, else that on the PATH.
 set -euo pipefail
 
+case "${1:-}" in
+  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+esac
 fail() {
   echo "error: $*" >&2
   exit 2
@@ -78,6 +81,5 @@ BASH
     printf 'wall_s_one_worker: %s\nwall_s_two_workers: %s\n' "$one" "$two"
     awk -v one="$one" -v two="$two" 'BEGIN { printf "times_as_fast: %.2f\n", one / two }'
     ;;
-  --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" ;;
   *) fail "give overhead or workers; see --help" ;;
 esac

@@ -37,8 +37,8 @@ void CheckTypedValue(const CommandSyntax& syntax, const Option& option, const st
                                  given_as, value, HelpHint(syntax)));
   }
   if (value.empty() && option.path_use != PathUse::kNone) {
-    throw InputError(fmt::format(
-        "{}: needs a value and has an empty one; give a path, or leave it out", given_as));
+    throw InputError(fmt::format("{}: needs a value and has an empty one; give a path{}", given_as,
+                                 option.required ? "" : ", or leave it out"));
   }
 }
 

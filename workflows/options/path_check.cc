@@ -110,6 +110,19 @@ void CheckKinds(const UsedPaths& paths) {
   }
 }
 
+// Throws InputError if the folder in which the output goes, or the first one that has to be made,
+// is no folder or is write-protected: before the work whose result would be lost.
+void CheckFolderOf(const UsedPath& output) {
+  if (Exists(output.path) && !IsFolder(output.path) && !IsRegularFile(output.path)) return;
+  fs::path folder = CanonicalPath(output.path).parent_path();
+  while (!Exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!IsFolder(folder)) {
+    throw InputError(fmt::format("{}: cannot be written: Not a directory; give another {}",
+                                 folder.string(), output.used_by));
+  }
+  CheckNotProtected(folder);
+}
+
 }  // namespace
 
 void CheckInputKind(const std::string& used_by, const fs::path& path) {
@@ -138,6 +151,7 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 
 void CompletePaths(const std::vector<OptionGroup>& groups) {
   UsedPaths paths;
+  std::vector<UsedPath> named_outputs;  // a workspace checks its folders itself
   for (const OptionGroup& group : groups) {
     for (const Option& option : group.options) {
       const auto* target = std::get_if<std::string*>(&option.target);
@@ -152,10 +166,15 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
       if (path->empty() || option.path_use == PathUse::kNone) continue;
       RegisterPrivatePath(*path);
       AddUse(option.path_use, "--" + option.name, *path, is_default_name, &paths);
+      if (option.path_use == PathUse::kWritesFile || option.path_use == PathUse::kWritesOwnFile ||
+          option.path_use == PathUse::kWritesFolder) {
+        named_outputs.push_back({"--" + option.name, AbsoluteFolder(*path)});
+      }
     }
   }
   CheckKinds(paths);
   CheckOutputs(paths.inputs, paths.outputs);
+  for (const UsedPath& output : named_outputs) CheckFolderOf(output);
 }
 
 }  // namespace velamap

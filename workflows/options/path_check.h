@@ -24,7 +24,7 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 // (importer/text/shown_text.h). Throws InputError for an input that is a pipe or a device, for an
 // output that is a pipe or, where a file is needed, a folder, and where CheckOutputs()
 // (importer/base/replacement.h) does: if a file of the user's is where an output that is left out,
-// a layout or a calibration goes.
+// a layout or a calibration goes. Throws it, too, where the folder of an output cannot be written.
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap

@@ -136,7 +136,12 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
     }
     return ReadLayout(options.layout_path);
   }
-  if (!has_length || (with_dictionary && options.dictionary.empty())) {
+  if (has_length && with_dictionary && options.dictionary.empty()) {
+    throw InputError(
+        "--dictionary: missing; give that of the markers, such as DICT_4X4_50, beside "
+        "--marker_length, or a layout file by --layout_path instead of both");
+  }
+  if (!has_length) {
     throw InputError(
         fmt::format("--layout_path: missing; give a layout file, or --marker_length{}",
                     with_dictionary && options.dictionary.empty() ? " and --dictionary" : ""));

@@ -54,8 +54,9 @@ void PrintFacts(const ShootPlan& plan, std::ostream& out) {
 }
 
 void PrintViews(const ShootPlan& plan, std::ostream& out) {
-  out << "\nWhat one view sees\n"
-         "distance_m  angle_deg  side_px  in_picture_%  found_%  longest_exposure\n";
+  WriteFormatted(out, "\nWhat one view sees (longest_exposure at {:.2g} m/s)\n",
+                 plan.shutters.front().speed_m_s);
+  out << "distance_m  angle_deg  side_px  in_picture_%  found_%  longest_exposure\n";
   for (const PlannedView& view : plan.views) {
     const ViewSummary& summary = view.summary;
     WriteFormatted(out, "{:>10.4g}  {:>9.0f}  {:>7.1f}  {:>12.0f}  {:>7.0f}  {:>16}\n",

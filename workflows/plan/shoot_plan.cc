@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -146,11 +148,12 @@ PlannedVariant MakeVariant(const std::string& changed, const PlannedPath& path,
   return variant;
 }
 
-void AddVariants(const ShootPlanOptions& options, ShootPlan* plan) {
+void AddVariants(const ShootPlanOptions& options, const ProgressCallback& progress,
+                 ShootPlan* plan) {
+  std::vector<std::pair<std::string, PlannedPath>> paths;
   const auto add = [&](const std::string& changed, auto PlannedPath::*member, auto value) {
-    PlannedPath path = plan->path;
-    path.*member = value;
-    plan->variants.push_back(MakeVariant(changed, path, plan->surface, plan->camera, options));
+    paths.emplace_back(changed, plan->path);
+    paths.back().second.*member = value;
   };
   for (const int num_views : {5, 10, 20, 40, 80}) add("views", &PlannedPath::num_views, num_views);
   for (const double arc_deg : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0}) {
@@ -158,6 +161,13 @@ void AddVariants(const ShootPlanOptions& options, ShootPlan* plan) {
   }
   for (const double factor : {0.7, 1.5, 2.0}) {
     add("distance", &PlannedPath::distance_m, Rounded(factor * plan->path.distance_m));
+  }
+  const auto num_paths = static_cast<int>(paths.size());
+  if (progress) progress(0, num_paths, "");
+  int num_done = 0;
+  for (const auto& [changed, path] : paths) {
+    plan->variants.push_back(MakeVariant(changed, path, plan->surface, plan->camera, options));
+    if (progress) progress(++num_done, num_paths, "");
   }
 }
 
@@ -221,7 +231,7 @@ std::optional<PlannedRecommendation> Recommend(const ShootPlan& plan,
 }  // namespace
 
 ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
-                        const ShootPlanOptions& options) {
+                        const ShootPlanOptions& options, const ProgressCallback& progress) {
   PlannedPath path{0.0, options.arc_deg,
                    options.height_m.value_or(std::min(kUsualHeight_m, LowestDepth(surface))),
                    options.num_views};
@@ -231,7 +241,7 @@ ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
   ShootPlan plan = PlanPath(surface, camera, path, options);
   plan.recommended = Recommend(plan, options);
   AddViews(options, &plan);
-  AddVariants(options, &plan);
+  AddVariants(options, progress, &plan);
   return plan;
 }
 

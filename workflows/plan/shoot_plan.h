@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exporters/report/verdict.h"
+#include "importer/base/progress_callback.h"
 #include "workflows/plan/plan_options.h"
 #include "workflows/plan/plan_precision.h"
 #include "workflows/plan/plan_views.h"
@@ -58,9 +59,9 @@ struct ShootPlan {
 };
 
 // Throws InputError for a distance at which hardly any marker is found, and where no distance shows
-// four markers.
+// four markers. `progress` is of the paths that differ from the plan, which take most of the time.
 ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
-                        const ShootPlanOptions& options);
+                        const ShootPlanOptions& options, const ProgressCallback& progress = {});
 
 Verdict JudgePlan(const ShootPlan& plan);
 

@@ -41,7 +41,7 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
   LogInfo("bundle adjustment of {} images and {} points by {}", model->images.size(),
           model->points3D.size(), options.colmap_path);
   const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
-  LogInfo("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
+  LogInfo("rounds: {}, outliers removed: {}, mean reprojection error {:.3f} -> {:.3f} px",
           summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
           summary.error_after_px.mean);
   WarnOfRemovedImages(summary.removed_images);
@@ -56,7 +56,7 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
 void LogMarkersSummary(const MarkerAdjustmentSummary& summary) {
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   LogInfo(
-      "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
+      "iterations: {}, outliers removed: {}, mean reprojection error {:.3f} -> {:.3f} px, scale "
       "sigma {:.3f} %",
       summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
       summary.error_after_px.mean, 100.0 * uncertainty.relative_scale_sigma);

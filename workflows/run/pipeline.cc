@@ -104,13 +104,14 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
 }
 
 ImportReport ImportWithProgress(const MarkerImporterOptions& options, const std::string& what) {
-  Progress formation("estimating camera and print"), frames(what);
+  Progress sampling("sampling markers for camera and print"),
+      formation("estimating camera and print"), frames(what);
   const auto shown_by = [](Progress& progress) {
     return [&progress](int done, int total, const std::string& message) {
       progress.Update(done, total, message);
     };
   };
-  return ImportMarkers(options, {shown_by(formation), shown_by(frames)});
+  return ImportMarkers(options, {shown_by(sampling), shown_by(formation), shown_by(frames)});
 }
 
 ImportReport ImportImages(const MarkerImporterOptions& options) {
@@ -157,7 +158,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
     seed.image_names.push_back(name);
   }
-  LogInfo("registering {} images", images.size());
+  LogInfo("images to register: {}", images.size());
   RegistrationOptions registration = options;
   registration.has_calibration = database.HasCalibration();
   seed.registration = RegisterFrames(images, cameras, layout, registration);

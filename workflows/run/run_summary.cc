@@ -54,7 +54,8 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   }
   out << '\n';
   const std::vector<ReportLeftOut> left_out = MarkersLeftOut(summary);
-  if (!left_out.empty()) WriteFormatted(out, "markers left out: {}\n", LeftOutText(left_out));
+  if (!left_out.empty())
+    WriteFormatted(out, "markers left out: {}\n", LeftOutText(left_out, "marker"));
 }
 
 void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
@@ -102,8 +103,8 @@ void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
                    surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : shape.freeform.surfaces) {
-    WriteFormatted(out, "surface: {}, {}, {:.2g} mm RMS from the corners\n", ShownName(part.part),
-                   SizeText(part.surface), kMmPerM * part.surface.distance_m.rms);
+    WriteFormatted(out, "surface: {}, {}, known to {:.2g} mm (1 sigma)\n", ShownName(part.part),
+                   SizeText(part.surface), kMmPerM * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
     for (const std::string& note : *notes) WriteFormatted(out, "surface: {}\n", note);

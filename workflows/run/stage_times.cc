@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <optional>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -34,10 +35,13 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports KiB
 }
 
-// Parts run in parallel and wait for each other, so their rate is by CPU time.
-double FramesPerSecond(const StageTime& time) {
+// Nothing without frames and below a millisecond, where the clocks give no rate. Parts run in
+// parallel and wait for each other, so their rate is by CPU time.
+std::optional<double> FramesPerSecond(const StageTime& time) {
+  constexpr double kMinSeconds = 1e-3;
   const double seconds = time.part_of.empty() ? time.wall_s : time.cpu_s;
-  return seconds > 0 ? time.num_frames / seconds : 0.0;
+  if (time.num_frames == 0 || seconds < kMinSeconds) return std::nullopt;
+  return time.num_frames / seconds;
 }
 
 }  // namespace
@@ -76,8 +80,8 @@ std::vector<std::string> StageTable(const std::vector<StageTime>& times) {
   std::vector<std::string> lines = {
       fmt::format("{:<11} {:>8} {:>8} {:>8} {:>8}", "stage", "wall s", "CPU s", "frames/s", "MB")};
   for (const StageTime& time : times) {
-    const std::string rate =
-        time.num_frames > 0 ? fmt::format("{:.1f}", FramesPerSecond(time)) : std::string();
+    const std::optional<double> frames_per_s = FramesPerSecond(time);
+    const std::string rate = frames_per_s ? fmt::format("{:.1f}", *frames_per_s) : std::string();
     const std::string name = (time.part_of.empty() ? "" : "  ") + time.name;
     lines.push_back(fmt::format("{:<11} {:>8.2f} {:>8.2f} {:>8} {:>8.0f}", name, time.wall_s,
                                 time.cpu_s, rate, time.peak_memory_mb));
@@ -96,9 +100,9 @@ void WriteStageTimesJson(const std::vector<StageTime>& times, std::ostream& out)
     if (!time.part_of.empty()) stage["part_of"] = time.part_of;
     stage["wall_s"] = time.wall_s;
     stage["cpu_s"] = time.cpu_s;
-    if (time.num_frames > 0) {
-      stage["num_frames"] = time.num_frames;
-      stage[time.part_of.empty() ? "frames_per_s" : "frames_per_cpu_s"] = FramesPerSecond(time);
+    if (time.num_frames > 0) stage["num_frames"] = time.num_frames;
+    if (const std::optional<double> frames_per_s = FramesPerSecond(time)) {
+      stage[time.part_of.empty() ? "frames_per_s" : "frames_per_cpu_s"] = *frames_per_s;
     }
     stage["peak_memory_mb"] = time.peak_memory_mb;
     json.push_back(std::move(stage));

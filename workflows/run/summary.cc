@@ -130,11 +130,15 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
 
 }  // namespace
 
-std::string LeftOutText(const std::vector<ReportLeftOut>& left_out) {
-  if (left_out.empty()) return "none";
-  std::string text = fmt::format("{}", left_out.size());
-  for (const ReasonGroup& group : GroupByReason(left_out)) {
-    text += fmt::format("; {}: {} ({})", group.names.size(), group.reason, FirstNames(group.names));
+std::string LeftOutText(const std::vector<ReportLeftOut>& left_out, const std::string& kind) {
+  const std::vector<ReasonGroup> groups = GroupByReason(left_out);
+  if (groups.empty()) return "none";
+  std::string text = groups.size() > 1 ? std::to_string(left_out.size()) : "";
+  for (const ReasonGroup& group : groups) {
+    const bool is_not_chosen = group.reason.rfind(kNotChosen, 0) == 0;
+    const std::string of_kind = kind.empty() ? "" : kind + (group.names.size() > 1 ? "s " : " ");
+    text += fmt::format("{}{}{} {} ({}{})", text.empty() ? "" : "; ", group.names.size(),
+                        is_not_chosen ? "" : ":", group.reason, of_kind, FirstNames(group.names));
   }
   return text;
 }
@@ -217,8 +221,10 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
     WriteFormatted(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
   }
   if (metrics.sail_reconstruction_ratio) {
-    WriteFormatted(out, "sail_reconstruction_ratio: {:.4g} of {} markers\n",
-                   *metrics.sail_reconstruction_ratio, *metrics.num_sail_markers);
+    const double ratio = *metrics.sail_reconstruction_ratio;
+    const int num_markers = *metrics.num_sail_markers;
+    WriteFormatted(out, "sail_reconstruction_ratio: {:.4g} ({:.0f} of {} markers)\n", ratio,
+                   ratio * num_markers, num_markers);
   }
   const ModelMetrics& model = report.model_metrics;
   WriteFormatted(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));

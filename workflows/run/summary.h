@@ -13,8 +13,9 @@
 namespace velamap {
 
 // How many are left out for each reason, with the first few names; "none" for an empty list.
-// Reasons that differ only in their numbers are counted together.
-std::string LeftOutText(const std::vector<ReportLeftOut>& left_out);
+// Reasons that differ only in their numbers are counted together. `kind`, such as "marker", stands
+// before the names.
+std::string LeftOutText(const std::vector<ReportLeftOut>& left_out, const std::string& kind = "");
 
 // The markers, named by their ids.
 std::vector<ReportLeftOut> NamedById(const std::vector<DroppedMarker>& markers);

@@ -82,7 +82,7 @@ TEST(Verdict, NamesTheCalibrationAndOffersTheRefinementThatExplainsIt) {
   EXPECT_EQ(MakeVerdict(input).level, ReportStatus::kGood);
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), StartsWith("Calibration: 0.200 px"));
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("does not belong to these images"));
-  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("its focal length is +10.0 % off"));
+  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("its focal length is 10.0 % too large"));
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)),
               HasSubstr("--BundleAdjustment.refine_focal_length 1"));
   EXPECT_THAT(first_reason(Doubtful(0.3, 0.95)),

@@ -92,10 +92,24 @@ TEST(ScaleAuditReport, TheShortFormHasAtMostFourLines) {
   const std::string text = ShortForm(scale, FullAudit());
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
   EXPECT_THAT(text, HasSubstr("scale_sigma: 0.0400 % (2 markers"));
-  EXPECT_THAT(text, HasSubstr("scale_disagreeing_markers: 1 of 2: 9 by +100.00 %\n"));
+  EXPECT_THAT(text,
+              HasSubstr("scale_disagreeing_markers: 1 of 2; against the others: 9 by +99.98 %\n"));
   EXPECT_THAT(text, HasSubstr("scale_of_part_against_others: hull +0.400 +- 0.100 %"));
   EXPECT_THAT(text, HasSubstr("known_distances: 1 of 2 reconstructed, checks off by +0.150 +- "
                               "0.050 %, worst 4-9.2 +2.90 mm (+2.9 sigmas)\n"));
+}
+
+// All markers are 0.9 % off the layout; one of them is 3.1 sigmas off the others.
+TEST(ScaleAuditReport, TheShortFormComparesAMarkerWithTheOthersAndNotWithTheLayout) {
+  ScaleAudit audit = FullAudit();
+  audit.deviation = -0.009;
+  audit.markers[1].deviation = -0.0112;
+  EXPECT_THAT(ShortForm({}, audit), HasSubstr("1 of 2; against the others: 9 by -0.22 %\n"));
+  audit.parts_disagree = true;
+  audit.markers[1].sigmas_off = -4;
+  audit.markers[1].sigma = 4e-3;  // 5e-3 with the spread
+  EXPECT_THAT(ShortForm({}, audit),
+              HasSubstr("1 of 2; against those of their part: 9 by -1.98 %\n"));
 }
 
 TEST(ScaleAuditReport, ACheckBeyondThreeSigmasIsAWarning) {
@@ -141,7 +155,8 @@ TEST(ScaleAuditReport, TheShortFormNamesNoMoreMarkersThanFitALine) {
     audit.markers.push_back(audit.markers[1]);
     audit.markers.back().marker_id = id;
   }
-  EXPECT_THAT(ShortForm({}, audit), HasSubstr("scale_disagreeing_markers: 101 of 102: 9 by"));
+  EXPECT_THAT(ShortForm({}, audit),
+              HasSubstr("scale_disagreeing_markers: 101 of 102; against the others: 9 by"));
   EXPECT_THAT(ShortForm({}, audit), HasSubstr(", ...\n"));
   EXPECT_EQ(ShortForm({}, ScaleAudit()), "");
 }

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
@@ -105,6 +106,32 @@ TEST(ReadCalibration, NamesFileAndKeyOfAnError) {
   expect("%YAML:1.0\n---\nimage_width: [1, 2\n", "not a readable OpenCV FileStorage");
   ExpectThrows<InputError>([&] { ReadCalibration(dir / "none.yml"); },
                            {"none.yml", "there is no such"});
+}
+
+TEST(ReadCalibration, RefusesFocalLengthsThatNoCameraHas) {
+  const TempDir dir;
+  const auto read = [&](double focal_px) {
+    return ReadCalibration(WriteText(
+        dir, "cameras.txt", fmt::format("1 SIMPLE_PINHOLE 1920 1080 {} 960 540\n", focal_px)));
+  };
+  for (const double focal_px : {8.75, 191.0, 96001.0}) {
+    ExpectThrows<InputError>([&] { read(focal_px); },
+                             {"cameras.txt", "focal length", "192 to 96000 px", "not in mm"});
+  }
+  for (const double focal_px : {192.0, 96000.0}) EXPECT_EQ(read(focal_px).params[0], focal_px);
+}
+
+TEST(ReadCalibration, CountsTheNumbersOfAMatrixWithDecimalCommas) {
+  const TempDir dir;
+  const auto expect = [&](const std::string& matrix, const std::string& part) {
+    const std::string path =
+        WriteText(dir, "bad.yml", "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n" + matrix);
+    ExpectThrows<InputError>([&] { ReadCalibration(path); }, {path, part, "decimal points"});
+  };
+  const std::string data = "[500,5, 0., 320,5, 0., 500,5, 240,5, 0., 0., 1.]\n";
+  expect("camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: " + data,
+         "9 are expected, 13 found");
+  expect("camera_matrix: " + data, "expected 3x3 values, found 13");
 }
 
 TEST(ReadCalibration, NamesTheLineOfCamerasTxt) {

@@ -24,6 +24,14 @@ TEST(DescribeDetector, NamesTheLinesThatATrackedSearchFollows) {
   EXPECT_EQ(Describe(exhaustive, {1, 2, 3}), Describe(exhaustive, {2, 1, 3}));
 }
 
+TEST(DescribeDetector, OnlyTheSettingsThatDifferAreNamed) {
+  const std::string before = "dictionary=a border_bits=1 inverted=0 layout=12";
+  const std::string now = "dictionary=a border_bits=1 inverted=1 layout=123 map=7";
+  EXPECT_EQ(SettingsThatDiffer(before, now), "inverted=0 layout=12");
+  EXPECT_EQ(SettingsThatDiffer(now, before), "inverted=1 layout=123 map=7");
+  EXPECT_EQ(SettingsThatDiffer("a=1", "a=1 b=2"), "none of these");
+}
+
 PriorShape RowOfMarkers(const std::vector<int>& ids) {
   PriorShape prior;
   for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -97,6 +97,20 @@ TEST(IntrinsicsPrior, DistortionParamsOfACameraWithoutThemChangeNoImage) {
   EXPECT_EQ(WithDistortionParams(FiveCoefficients()), FiveCoefficients());
 }
 
+TEST(IntrinsicsPrior, ARefinementIsDescribedByWhatHasChanged) {
+  const Camera camera{CameraModel::kRadial, 1920, 1080, {1400, 960, 540, 0.05, -0.2}};
+  Camera refined = camera;
+  refined.params[0] = 1388.06;
+  EXPECT_EQ(DescribeRefinement(camera, refined), "focal length 1400.0 -> 1388.1 px");
+  refined.params[4] = -0.1;
+  EXPECT_EQ(DescribeRefinement(camera, refined),
+            "focal length 1400.0 -> 1388.1 px, distortion 0.05 -0.2 -> 0.05 -0.1");
+  refined = camera;
+  refined.params[1] = 961;
+  EXPECT_EQ(DescribeRefinement(camera, refined),
+            "principal point (960.0, 540.0) -> (961.0, 540.0) px");
+}
+
 TEST(IntrinsicsPrior, WithinIsJudgedByTheImageAndNotByTheSizeOfCoefficients) {
   Camera camera{CameraModel::kOpenCV, 1920, 1080, {5000, 5000, 960, 540, -0.09, 0, 0, 0}};
   const IntrinsicsPrior prior = MakeIntrinsicsPrior(camera, kAll, 0.01);

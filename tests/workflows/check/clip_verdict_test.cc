@@ -68,9 +68,7 @@ std::vector<Spoilt> SpoiltPictures() {
            [](ClipFacts* facts) { facts->num_frames_of_id[7] = 2; }},
           {"not in the layout: 99", ReportStatus::kCheck,
            [](ClipFacts* facts) { facts->ids_not_in_layout = {99}; }},
-          {"smaller than 16 px", ReportStatus::kCheck,
-           [](ClipFacts* facts) { facts->side_px = ComputeStatistics({16}); }},
-          {"smaller than 9 px", ReportStatus::kBad,
+          {"smaller than 9.0 px", ReportStatus::kBad,
            [](ClipFacts* facts) { facts->side_px = ComputeStatistics({9}); }},
           {"overexposed", ReportStatus::kCheck, [](ClipFacts* facts) { facts->white = 254; }},
           {"differ by 40", ReportStatus::kCheck, [](ClipFacts* facts) { facts->black = 170; }},
@@ -136,14 +134,20 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
   }
 }
 
-TEST(ClipVerdict, OfTheSizeItSaysWhatTheReconstructionSays) {
+// From 12 px on, hardly any marker is lost.
+TEST(ClipVerdict, SmallMarkersThatAreFoundAreAHintOnly) {
   ClipFacts facts = GoodClip();
-  facts.side_px = ComputeStatistics({16});
+  EXPECT_EQ(SizeHint(facts), "");
+  facts.side_px = ComputeStatistics({17.21});
   facts.precision->scale_sigma = 1.19e-3;
-  EXPECT_THAT(JudgeClip(facts).reasons,
-              ElementsAre(Field(&VerdictReason::text, HasSubstr("size is known to 0.12 %"))));
+  EXPECT_EQ(JudgeClip(facts).level, ReportStatus::kGood);
+  EXPECT_THAT(SizeHint(facts), HasSubstr("smaller than 17.2 px"));
+  EXPECT_THAT(SizeHint(facts), HasSubstr("size is known to 0.12 %"));
   facts.precision.reset();
-  EXPECT_THAT(JudgeClip(facts).reasons.front().text, HasSubstr("a few tenths of a percent"));
+  EXPECT_THAT(SizeHint(facts), HasSubstr("a few tenths of a percent"));
+  facts.side_px = ComputeStatistics({11.9});
+  EXPECT_EQ(SizeHint(facts), "");
+  EXPECT_EQ(JudgeClip(facts).level, ReportStatus::kBad);
 }
 
 TEST(ClipVerdict, WhatIsBadComesFirst) {
@@ -152,7 +156,7 @@ TEST(ClipVerdict, WhatIsBadComesFirst) {
   facts.side_px = ComputeStatistics({9});
   const Verdict verdict = JudgeClip(facts);
   EXPECT_EQ(verdict.level, ReportStatus::kBad);
-  EXPECT_THAT(verdict.reasons, ElementsAre(Field(&VerdictReason::text, HasSubstr("9 px")),
+  EXPECT_THAT(verdict.reasons, ElementsAre(Field(&VerdictReason::text, HasSubstr("9.0 px")),
                                            Field(&VerdictReason::text, HasSubstr("overexposed"))));
 }
 

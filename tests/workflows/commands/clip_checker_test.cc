@@ -40,9 +40,22 @@ TEST_F(ClipCheckerTest, SaysWhatTheCubesPhotographsAreWorth) {
 TEST_F(ClipCheckerTest, FindsTheDictionaryByItself) {
   const ProgramRun run = RunVelamap({"clip_checker", "--image_path", kCube + "images"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_"), HasSubstr("(found: "),
+  EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_"), HasSubstr("(found by trying: "),
                              HasSubstr("not_checked: depth, for lack of a calibration"),
                              Not(HasSubstr("precision: "))));
+}
+
+TEST_F(ClipCheckerTest, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  fs::create_directory(dir_.path() / "locked");
+  fs::permissions(dir_.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  for (const char* option : {"--output_path", "--proposed_layout_path"}) {
+    const ProgramRun run = RunVelamap({"clip_checker", "--image_path", kCube + "images", option,
+                                       (dir_.path() / "locked" / "new" / "frame.png").string()});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("locked: cannot be written: it is write-protected"));
+    EXPECT_THAT(run.out, Not(HasSubstr("verdict: ")));
+  }
+  fs::permissions(dir_.path() / "locked", fs::perms::owner_all);
 }
 
 TEST_F(ClipCheckerTest, PicturesWithoutMarkersAreABadClip) {

@@ -166,6 +166,13 @@ TEST(OptionParserTest, APathIsNotEmpty) {
       EXPECT_THAT(error.what(), testing::StartsWith("--text: needs a value"));
     }
   }
+  syntax.groups[0].options[0].path_use = PathUse::kReadsFile;
+  try {
+    ParseOptions(syntax, {"--path", ""}, {});
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::EndsWith("give a path"));  // it is required
+  }
 }
 
 TEST(OptionParserTest, TypedNamesAreThoseOfTheCommandLine) {

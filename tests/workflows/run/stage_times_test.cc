@@ -67,6 +67,23 @@ TEST(StageTimes, FormationIsTheFirstPartOfTheImport) {
   EXPECT_THAT(StageTable(times)[2], MatchesRegex("  formation +6.00 +12.00 +[0-9]+"));
 }
 
+// As of an import that finds all pictures in the database.
+TEST(StageTimes, BelowAMillisecondThereIsNoRate) {
+  const std::vector<StageTime> times = {{"import", "", 4e-4, 3e-4, 100, 250.0},
+                                        {"decode", "import", 2.0, 9e-4, 100, 250.0},
+                                        {"export", "", 2e-3, 0.0, 100, 250.0}};
+  const std::vector<std::string> table = StageTable(times);
+  EXPECT_THAT(table[1], MatchesRegex("import +0.00 +0.00 +250"));
+  EXPECT_THAT(table[2], MatchesRegex("  decode +2.00 +0.00 +250"));
+  EXPECT_THAT(table[3], MatchesRegex("export +0.00 +0.00 +50000.0 +250"));
+  std::ostringstream out;
+  WriteStageTimesJson(times, out);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json[0].at("num_frames"), 100);
+  EXPECT_FALSE(json[0].contains("frames_per_s"));
+  EXPECT_FALSE(json[1].contains("frames_per_cpu_s"));
+}
+
 TEST(StageTimes, TableAndJsonSayTheSame) {
   const std::vector<StageTime> times = {{"import", "", 2.0, 3.5, 100, 250.0},
                                         {"decode", "import", 1.0, 2.0, 100, 250.0},

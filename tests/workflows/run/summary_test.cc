@@ -19,14 +19,22 @@ TEST(LeftOutTextTest, MarkersAreCountedByReasonToo) {
   EXPECT_EQ(LeftOutText(NamedById({})), "none");
   EXPECT_EQ(LeftOutText(NamedById({{7, 3, "on line h1 it is 3.50 m from marker 6", true},
                                    {12, 4, "on line h2 it is 2.10 m from marker 11", true},
-                                   {90, 1, "seen in 1 registered frames", false}})),
-            "3; 2: on line h1 it is 3.50 m from marker 6 (7, 12); 1: seen in 1 registered frames "
-            "(90)");
+                                   {90, 1, "seen in 1 registered frames", false}}),
+                        "marker"),
+            "3; 2: on line h1 it is 3.50 m from marker 6 (markers 7, 12); 1: seen in 1 registered "
+            "frames (marker 90)");
 }
 
 TEST(LeftOutTextTest, ShowsTheFirstNamesOnly) {
-  EXPECT_EQ(LeftOutText({{"a", "r"}, {"b", "r"}, {"c", "r"}, {"d", "r"}}),
-            "4; 4: r (a, b, c, ...)");
+  EXPECT_EQ(LeftOutText({{"a", "r"}, {"b", "r"}, {"c", "r"}, {"d", "r"}}), "4: r (a, b, c, ...)");
+}
+
+TEST(LeftOutTextTest, SaysTheNumberOnceForOneReason) {
+  EXPECT_EQ(LeftOutText({{"17", "its side is 2.00 times as long"}}, "marker"),
+            "1: its side is 2.00 times as long (marker 17)");
+  EXPECT_EQ(
+      LeftOutText({{"a", std::string(kNotChosen) + "r"}, {"b", std::string(kNotChosen) + "r"}}),
+      "2 not chosen: r (a, b)");
 }
 
 TEST(FoundCameraTextTest, OnlyAGoodCameraServesTheNextClip) {
