@@ -8,7 +8,7 @@
 #include "importer/base/error.h"
 #include "importer/camera/calibration.h"
 #include "importer/camera/turned_camera.h"
-#include "importer/video/picture_metadata.h"
+#include "importer/photo/picture_metadata.h"
 
 namespace velamap {
 namespace {

@@ -23,8 +23,10 @@ house_folder(importer/print PUBLIC
   drawing drawing_writer marker_sheets placement png_file print_options sheet_plan)
 house_folder(importer/packets PUBLIC
   packet_damage video_seek)
+house_folder(importer/photo PUBLIC
+  heif_picture picture_metadata)
 house_folder(importer/video PUBLIC
-  frame_source image_file jpeg_codec picture_metadata source_file video_options written_frame)
+  frame_source image_file jpeg_codec source_file video_options written_frame)
 house_folder(importer/detect PUBLIC
   cell_means chessboard corner_colors detection detection_options duplicates gray_levels interpolate marker_alignment
   marker_location marker_quad marker_search search_regions)

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "importer/photo/heif_picture.h"
 #include "importer/video/ffmpeg_picture.h"
-#include "importer/video/heif_picture.h"
 #include "importer/video/jpeg_codec.h"
 
 namespace velamap {

@@ -6,7 +6,7 @@
 
 #include "importer/base/error.h"
 #include "importer/camera/turned_camera.h"
-#include "tests/importer/video/exif_builder.h"
+#include "tests/importer/photo/exif_builder.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,15 +1,15 @@
-#include "importer/video/heif_picture.h"
+#include "importer/photo/heif_picture.h"
 
 #include <fstream>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/photo/picture_metadata.h"
 #include "importer/video/image_file.h"
-#include "importer/video/picture_metadata.h"
 #include "importer/video/source_file.h"
-#include "tests/importer/video/exif_builder.h"
-#include "tests/importer/video/heif_builder.h"
+#include "tests/importer/photo/exif_builder.h"
+#include "tests/importer/photo/heif_builder.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

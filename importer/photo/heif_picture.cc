@@ -1,4 +1,4 @@
-#include "importer/video/heif_picture.h"
+#include "importer/photo/heif_picture.h"
 
 #include <algorithm>
 #include <memory>

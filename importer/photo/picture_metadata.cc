@@ -1,4 +1,4 @@
-#include "importer/video/picture_metadata.h"
+#include "importer/photo/picture_metadata.h"
 
 #include <cmath>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <libexif/exif-data.h>
 
 #include "importer/geometry/units.h"
-#include "importer/video/heif_picture.h"
+#include "importer/photo/heif_picture.h"
 
 namespace velamap {
 namespace {

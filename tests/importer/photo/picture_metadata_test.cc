@@ -1,11 +1,11 @@
-#include "importer/video/picture_metadata.h"
+#include "importer/photo/picture_metadata.h"
 
 #include <fstream>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/importer/video/exif_builder.h"
+#include "tests/importer/photo/exif_builder.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
