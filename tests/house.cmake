@@ -81,7 +81,7 @@ house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
   sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
-  ascii cad_library cad_writer length_unit mesh_triangles mesh_writer metrics_report
+  ascii cad_library cad_writer float_step length_unit mesh_triangles mesh_writer metrics_report
   ply_writer shape_csv shape_ply surface_grid surface_spline)
 house_folder(exporters/exchange PUBLIC
   alicevision_scene metashape_markers)
