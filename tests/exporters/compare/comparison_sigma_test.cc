@@ -10,10 +10,16 @@
 namespace velamap {
 namespace {
 
+AlignmentOptions BestFit() {
+  AlignmentOptions options;
+  options.method = AlignmentMethod::kBestFit;
+  return options;
+}
+
 struct AlignedBoat {
   MarkerShape reference = BoatShape(0.002);
   MarkerShape shape = Moved(FarPose(), BoatShape(0.001));
-  Alignment alignment = AlignShapes(shape, reference, BoatLayout(), {AlignmentMethod::kBestFit});
+  Alignment alignment = AlignShapes(shape, reference, BoatLayout(), BestFit());
   AlignmentSensitivity sensitivity{alignment};
   PointCovariance covariance = CovarianceFromSigmas(shape);
 };
