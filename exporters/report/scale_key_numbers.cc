@@ -44,10 +44,11 @@ std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
 // How far the markers are from their lengths in the layout where the model was adjusted with other
 // lengths; empty where it was not, or where measured distances explain it.
 std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& audit) {
-  constexpr double kMaxSigmas = 3.0;
+  constexpr double kMaxScaleSigmas = 3.0;
   const double sigma =
       std::hypot(scale.relative_sigma.value_or(0.0), audit.deviation_sigma.value_or(0.0));
-  if (!(sigma > 0) || std::abs(audit.deviation) <= kMaxSigmas * sigma || DistanceDecides(audit)) {
+  if (!(sigma > 0) || std::abs(audit.deviation) <= kMaxScaleSigmas * sigma ||
+      DistanceDecides(audit)) {
     return "";
   }
   return fmt::format(
