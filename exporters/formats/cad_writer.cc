@@ -51,7 +51,8 @@ namespace velamap {
 namespace {
 
 constexpr double kToleranceMm = 1e-5;
-constexpr int kIgesDecimals = 15;  // after the first digit: all that a double holds
+// After the first digit: as many as Open CASCADE has room for (24 characters), 1e-6 mm at 5000 km.
+constexpr int kIgesDecimals = 15;
 
 struct Knots {
   std::vector<double> values;
@@ -256,6 +257,8 @@ void WriteIges(const SplineSurface& surface, const std::string& name, std::ostre
   IGESData_IGESWriter text(writer.Model());
   // By default ten digits are written, which are tenths of a millimetre far from the origin.
   text.FloatWriter().SetDefaults(kIgesDecimals);
+  // Open CASCADE removes zeros only from numbers of at most 16 characters, and spoils longer ones.
+  text.FloatWriter().SetZeroSuppress(Standard_False);
   text.SendModel(IGESSelect_WorkLibrary::DefineProtocol());
   VELAMAP_CHECK(text.Print(out) || !out);
 }

@@ -103,7 +103,7 @@ TEST(ComparisonPage, ProfilesAgainstADesignLieWhereTheyAreInAllShapes) {
 // Against a design, the reference has only the sections of the shape that it is compared with.
 TEST(ComparisonPage, AProfileThatTheFirstShapeLacksIsDrawn) {
   const MeshDistance design(SailMesh());
-  ComparisonOptions options = WithDeflections();
+  ComparisonOptions options;
   options.alignment.method = AlignmentMethod::kNone;
   const MarkerShape whole = Fuller(), holed = Without({32, 33, 34}, Fuller());
   std::vector<std::set<std::string>> curves_of;
