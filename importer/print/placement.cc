@@ -190,10 +190,10 @@ OptionGroup DescribeOptions(SailPlacementOptions* options) {
        {"Sail.lines", &options->num_lines, "count", "horizontal lines of markers", FromTo(1, 200)},
        {"Sail.markers_per_line", &options->markers_per_line, "count",
         "markers on a line; fewer near the head, where they have no room", FromTo(1, 500)},
-       Common({"hull_markers", &options->hull_markers, "count",
-               "markers on the hull, a rigid part relative to which motion is measured; for a hull "
-               "without a sail, 0 means 8",
-               FromTo(0, 500)})}};
+       {"hull_markers", &options->hull_markers, "count",
+        "markers on the hull, a rigid part relative to which motion is measured; for a hull "
+        "without a sail, 0 means 8",
+        FromTo(0, 500)}}};
 }
 
 void SailPlacementOptions::Check() const { CheckRanges(*this); }

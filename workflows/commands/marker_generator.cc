@@ -15,6 +15,16 @@ struct MarkerGeneratorCommandOptions : CommandOptions {
   PrintOptions print;
 };
 
+// The options of a sail, which do not count its hull among the common ones: other commands have
+// fewer uses for it.
+OptionGroup SailAndHull(SailPlacementOptions* options) {
+  OptionGroup group = DescribeOptions(options);
+  for (Option& option : group.options) {
+    option.is_common = option.is_common || option.name == "hull_markers";
+  }
+  return group;
+}
+
 CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
   return {"marker_generator",
           "makes sheets of markers to print, a layout to start from, or a calibration board",
@@ -29,7 +39,7 @@ CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
                                "arrangement"))}},
            DescribeOptions(&options->print),
            DescribeOptions(&options->print.sheet),
-           DescribeOptions(&options->print.sail),
+           SailAndHull(&options->print.sail),
            DescribeOptions(&options->print.grid),
            DescribeOptions(&options->print.codes),
            DescribeOptions(&options->general)}};

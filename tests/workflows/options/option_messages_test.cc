@@ -79,7 +79,8 @@ const std::map<std::string, Names> kOptionsOfColmap = {
 };
 
 // Where --name and --option stand for any option.
-const std::set<std::string> kFilesOfAnyOption = {"workflows/options/option_parser.cc",
+const std::set<std::string> kFilesOfAnyOption = {"workflows/options/given_values.h",
+                                                 "workflows/options/option_parser.cc",
                                                  "workflows/commands/commands.cc"};
 
 std::map<std::string, Names> OptionsOfCommands() {
