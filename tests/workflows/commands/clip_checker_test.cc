@@ -79,7 +79,7 @@ TEST_F(ClipCheckerTest, AMirroredPictureIsNamed) {
       RunVelamap({"clip_checker", "--image_path", (dir_.path() / "mirrored").string(),
                   "--layout_path", kCube + "layout.yml"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: bad"), HasSubstr("if the picture is mirrored"),
+  EXPECT_THAT(run.out, AllOf(HasSubstr("verdict: bad"), HasSubstr("only in the mirrored image"),
                              HasSubstr("markers_seen: 0\n"), HasSubstr("ids_never_seen: 0-299\n")));
 }
 

@@ -103,7 +103,7 @@ TEST_F(StagesTest, OfTwoGroupsTheLargerIsUsedAndTheOtherNamed) {
                 [](int frame_idx, int id) { return id % 2 == (frame_idx < 5 ? 0 : 1); });
   const ProgramRun run = Register();
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("images_registered: 5 of 8\nimages_left_out: 3; 3: shares 0"));
+  EXPECT_THAT(run.out, HasSubstr("images_registered: 5 of 8\nimages_left_out: 3: shares 0"));
 }
 
 TEST_F(StagesTest, DatabaseThatIsMissingOrNone) {
