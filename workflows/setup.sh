@@ -7,8 +7,8 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
   libopencv-dev libopencv-contrib-dev libeigen3-dev
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev libexif-dev libheif-dev
-  libcairo2-dev libpng-dev fonts-dejavu-core
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev libexif-dev
+  libheif-dev libcairo2-dev libpng-dev fonts-dejavu-core
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev libpugixml-dev
   libboost-program-options-dev libfmt-dev libspdlog-dev libceres-dev nlohmann-json3-dev jq
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev

@@ -6,6 +6,7 @@
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/geometry/symmetric_eigen.h"
+#include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
 namespace {
@@ -39,18 +40,6 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
     }
   }
   return block;
-}
-
-// covariance * columns, which have three rows for each of its points.
-Eigen::MatrixXd ProductOf(const PointCovariance& covariance, const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd product = covariance.factor * (covariance.signs.asDiagonal() *
-                                                 (covariance.factor.transpose() * columns));
-  Eigen::Index begin = 0;
-  for (const Eigen::MatrixXd& block : covariance.blocks) {
-    product.middleRows(begin, block.rows()) += block * columns.middleRows(begin, block.rows());
-    begin += block.rows();
-  }
-  return product;
 }
 
 }  // namespace
@@ -136,7 +125,7 @@ AlignedNoise::AlignedNoise(const AlignmentSensitivity& sensitivity, ComparedShap
     if (idx >= 0) motion_by_rows.middleRows<3>(3 * idx) = rotation * motion;
   }
   if (!has_all_corners_) return;
-  corners_with_motion_ = ProductOf(covariance, motion_by_rows);
+  corners_with_motion_ = Multiply(covariance, motion_by_rows);
   of_motion_ = motion_by_rows.transpose() * corners_with_motion_;
 }
 

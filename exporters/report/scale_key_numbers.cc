@@ -98,14 +98,13 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
       "the sizes of the markers contradict each other: check their prints and marker_length, and "
       "measure a distance (distances, use: scale)"};
   JudgeScaleSigma(scale, &number);
+  const std::string contradiction =
+      audit != nullptr && uncertainty != nullptr ? ContradictionOfLayout(scale, *audit) : "";
   if (audit != nullptr && !FailedChecks(*audit).empty()) {
     number.meaning += "; measured distances contradict it";
     number.status = ReportStatus::kBad;
     number.advice = "find out which is wrong, the measured distances or the shape, before using it";
-  } else if (const std::string contradiction = audit != nullptr && uncertainty != nullptr
-                                                   ? ContradictionOfLayout(scale, *audit)
-                                                   : "";
-             !contradiction.empty()) {
+  } else if (!contradiction.empty()) {
     number.meaning += "; " + contradiction;
     number.status = ReportStatus::kBad;
     number.advice = contradiction + ": adjust it again with this layout (bundle_adjuster)";

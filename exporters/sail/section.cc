@@ -19,7 +19,6 @@ namespace velamap {
 namespace {
 
 constexpr double kMinCamber = 1e-3;
-constexpr double kMinHint = 0.5;  // cosine of 60 degrees
 constexpr const char* kBoomPart = "boom";
 constexpr const char* kCenterlinePart = "centerline";
 
@@ -217,7 +216,7 @@ SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame,
   // Some layouts list the lines from head to foot. The up direction of the frame, or otherwise of
   // the lines, decides which end is the head if it is within 60 degrees of the luff.
   const std::optional<Eigen::Vector3d>& hint = frame.up_in_frame ? frame.up_in_frame : sail;
-  const bool is_down = hint && along->dot(*hint) < -kMinHint;
+  const bool is_down = hint && PointsDown(*along, *hint);
   return {is_down ? Eigen::Vector3d(-*along) : *along, luff ? "luff" : "lines"};
 }
 

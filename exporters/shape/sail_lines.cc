@@ -109,8 +109,12 @@ std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& la
   return part == nullptr ? std::nullopt : SailUp(shape, *part);
 }
 
+bool PointsDown(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
+  constexpr double kMinCosine = 0.5;
+  return direction.dot(up) < -kMinCosine * direction.norm();
+}
+
 std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout) {
-  constexpr double kMaxCosine = -0.5;  // 120 degrees
   constexpr double kClearMajority = 0.75;
   const LayoutPart* part = FirstPartWithLines(layout);
   const std::optional<Eigen::Vector3d> up = SailUp(shape, layout);
@@ -120,7 +124,7 @@ std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout) {
     const ShapeMarker* marker = FindWholeMarker(shape, id);
     if (marker == nullptr) continue;
     ++num_whole;
-    if (MarkerUp(*marker).dot(*up) < kMaxCosine) ++num_against;
+    if (PointsDown(MarkerUp(*marker), *up)) ++num_against;
   }
   if (num_against == 0 || num_against < kClearMajority * num_whole) return "";
   return fmt::format(

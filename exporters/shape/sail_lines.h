@@ -43,8 +43,12 @@ std::optional<Eigen::Vector3d> LinesUp(const MarkerShape& shape, const LayoutPar
 // SailUp() of the first part with horizontal lines.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout);
 
+// Whether the direction (of any length) is within 60 degrees of the opposite of `up`, a unit
+// vector.
+bool PointsDown(const Eigen::Vector3d& direction, const Eigen::Vector3d& up);
+
 // Why the first part with horizontal lines may be listed from head to foot, with the remedy: most
-// of its whole markers stand more than 120 degrees from SailUp(). Empty if they do not. Markers may
+// of its whole markers point down (PointsDown()), by SailUp(). Empty if they do not. Markers may
 // also be glued upside down, so that this decides nothing.
 std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout);
 

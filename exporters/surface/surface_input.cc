@@ -69,17 +69,13 @@ std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
 // and head belong to the cloth, and stay.
 void OrderFromFootToHead(const MarkerShape& shape, const LayoutPart& part,
                          const std::optional<Eigen::Vector3d>& up_in_shape, SurfaceInput* input) {
-  constexpr double kMaxCosine = -0.5;  // of the angle to up: 120 degrees
   const std::optional<Eigen::Vector3d> up = up_in_shape ? up_in_shape : SailUp(shape, part);
   if (!up) return;
   const std::optional<Eigen::Vector3d> along = LinesUp(shape, part);
-  if (along && along->dot(*up) < kMaxCosine) {
-    std::reverse(input->lines.begin(), input->lines.end());
-  }
+  if (along && PointsDown(*along, *up)) std::reverse(input->lines.begin(), input->lines.end());
   for (auto* edge : {&input->edges.luff, &input->edges.leech}) {
     if (edge->empty()) continue;
-    const Eigen::Vector3d chord = edge->back() - edge->front();
-    if (chord.dot(*up) < kMaxCosine * chord.norm()) std::reverse(edge->begin(), edge->end());
+    if (PointsDown(edge->back() - edge->front(), *up)) std::reverse(edge->begin(), edge->end());
   }
 }
 

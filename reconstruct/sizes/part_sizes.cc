@@ -38,7 +38,7 @@ std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double 
     MarkerIdxs idxs;
     std::copy_if(all.begin(), all.end(), std::back_inserter(idxs),
                  [&](std::size_t i) { return !agreement.is_contradicting[i]; });
-    if (idxs.empty()) continue;
+    if (idxs.empty()) continue;  // no marker is near the median of two equally large groups
     PartSize size{part, idxs.size(), 0.0, 0.0, MeanByFactor(sizes, idxs)};
     const double count = static_cast<double>(idxs.size());
     for (const std::size_t i : idxs) {
@@ -123,7 +123,9 @@ std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx
 
 PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                         double print_scale_sigma) {
-  const std::vector<PartSize> parts = MeasureParts(OfLargeParts(sizes), print_tolerance);
+  const std::vector<MarkerSize> of_large_parts = OfLargeParts(sizes);
+  if (GroupByPart(of_large_parts).size() < 2) return {};
+  const std::vector<PartSize> parts = MeasureParts(of_large_parts, print_tolerance);
   if (parts.size() < 2) return {};
   std::vector<PartDifference> differences;
   for (std::size_t i = 0; i < parts.size(); ++i) differences.push_back(CompareWithOthers(parts, i));

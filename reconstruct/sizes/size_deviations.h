@@ -81,6 +81,7 @@ struct SizeAgreement {
 // it is raised if they scatter more than 1.3 times as far as it explains. Fewer markers may agree
 // by chance, so it is always raised to their scatter, which is widened by Student's t; they scatter
 // clearly more if more than a third of them would contradict the others at the given tolerance.
+// `sizes` must not be empty.
 SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                               double print_tolerance);
 

@@ -147,16 +147,10 @@ TEST(CameraSearch, PortraitAndLandscapePicturesAreOneCamera) {
 
 TEST(CameraSearch, ASmallZoomIsMeasuredByTwoCameras) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 960, 540, 0}};
-  const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
   for (const double zoom : {1.0, 1.03}) {
-    std::vector<DatabaseImage> images = DatabaseImages(scene);
-    for (std::size_t i = 8; i < images.size(); ++i) {
-      for (MarkerDetection& marker : images[i].detections.markers) {
-        for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-          corner = Eigen::Vector2d(960, 540) + zoom * (corner - Eigen::Vector2d(960, 540));
-        }
-      }
-    }
+    SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
+    ZoomFrom(8, zoom, &scene);
+    const std::vector<DatabaseImage> images = DatabaseImages(scene);
     const std::map<CameraId, Camera> cameras = {{1, truth}};
     const Registration registration = RegisterFrames(images, cameras, scene.layout, {});
     const Model model = MakeSeedModel(registration, images, cameras);
@@ -175,19 +169,18 @@ TEST(CameraSearch, ASmallZoomIsMeasuredByTwoCameras) {
 // camera that was held upright for every second picture has zoomed as well.
 TEST(CameraSearch, ALargeZoomIsMeasuredInPortraitAndLandscape) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 960, 540, 0}};
-  const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 9);
+  ZoomFrom(8, 1.1, &scene);
   for (const bool has_portraits : {false, true}) {
     std::vector<DatabaseImage> images = DatabaseImages(scene);
     std::map<CameraId, Camera> cameras = {{1, truth}};
     if (has_portraits) cameras[2] = TurnCamera(truth, 1);
     for (std::size_t i = 0; i < images.size(); ++i) {
-      const bool is_portrait = has_portraits && i % 2 == 0;
-      if (is_portrait) images[i].camera_id = 2;
+      if (!has_portraits || i % 2 != 0) continue;
+      images[i].camera_id = 2;
       for (MarkerDetection& marker : images[i].detections.markers) {
         for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-          const double zoom = i < 8 ? 1.0 : 1.1;
-          corner = Eigen::Vector2d(960, 540) + zoom * (corner - Eigen::Vector2d(960, 540));
-          if (is_portrait) corner = TurnInImage(truth, 1, corner);
+          corner = TurnInImage(truth, 1, corner);
         }
       }
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -58,5 +59,8 @@ SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options);
 
 // Perturbs the detections, but not the truth.
 void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene);
+
+// Enlarges the pictures about their middle from this frame on, as a lens that zooms does.
+void ZoomFrom(std::size_t first_frame_idx, double zoom, SyntheticScene* scene);
 
 }  // namespace velamap

@@ -24,14 +24,9 @@ TEST(MeasureFocalStep, IsOnePercentOrMoreInSigmasOfBothCameras) {
   SyntheticScene scene = MakeSyntheticScene(options);
   AddNoise({0.1, 0, 0, 200, 9}, &scene);
   for (const double zoom : {1.005, 1.017}) {
-    std::vector<DatabaseImage> images = DatabaseImages(scene);
-    for (std::size_t i = 8; i < images.size(); ++i) {
-      for (MarkerDetection& marker : images[i].detections.markers) {
-        for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-          corner = Eigen::Vector2d(960, 540) + zoom * (corner - Eigen::Vector2d(960, 540));
-        }
-      }
-    }
+    SyntheticScene zoomed = scene;
+    ZoomFrom(8, zoom, &zoomed);
+    const std::vector<DatabaseImage> images = DatabaseImages(zoomed);
     const std::map<CameraId, Camera> cameras = {{1, truth}};
     Model model = MakeSeedModel(RegisterFrames(images, cameras, scene.layout, {}), images, cameras);
     const CornerErrors errors = CornerErrorsOf(images);

@@ -5,9 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "importer/geometry/alignment.h"
-#include "reconstruct/adjust/marker_adjustment.h"
-#include "tests/reconstruct/scene_model.h"
+#include "tests/reconstruct/sizes/printed_scene.h"
 
 namespace velamap {
 namespace {
@@ -16,7 +14,7 @@ using testing::Contains;
 using testing::HasSubstr;
 
 // Sizes of few markers that disagree with each other.
-class FewMarkers : public testing::Test {
+class FewMarkers : public PrintedSceneTest {
  protected:
   void Place(int num_rows, int num_columns) {
     SyntheticSceneOptions options;
@@ -32,26 +30,6 @@ class FewMarkers : public testing::Test {
     for (const auto& [marker_id, corners] : scene_.x_in_world) ids.push_back(marker_id);
     return ids;
   }
-
-  MarkerAdjustmentSummary Adjust(std::uint32_t seed) {
-    SyntheticScene noisy = scene_;
-    AddNoise({0.05, 0, 0, 200, seed}, &noisy);
-    model_ = MakeSceneModel(noisy);
-    return AdjustWithMarkers({}, noisy.layout, {}, &model_);
-  }
-
-  double ScaleError() const {
-    std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
-    for (const auto& [point3D_id, point] : model_.points3D) {
-      const CornerId id = CornerFromPoint3DId(point3D_id);
-      x_in_world.push_back(point.x_in_world);
-      x_in_truth.push_back(scene_.x_in_world.at(id.marker_id)[id.corner]);
-    }
-    return EstimateSim3(x_in_truth, x_in_world).scale - 1.0;
-  }
-
-  SyntheticScene scene_;
-  Model model_;
 };
 
 // No median is near half of them. A model without any size would shrink without end.

@@ -8,9 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "importer/geometry/alignment.h"
-#include "reconstruct/adjust/marker_adjustment.h"
-#include "tests/reconstruct/scene_model.h"
+#include "tests/reconstruct/sizes/printed_scene.h"
 
 namespace velamap {
 namespace {
@@ -39,32 +37,14 @@ SyntheticScene TwoParts() {
   return scene;
 }
 
-class PartSizes : public testing::Test {
+class PartSizes : public PrintedSceneTest {
  protected:
+  PartSizes() { scene_ = TwoParts(); }
+
   // Prints the markers of a part with this factor.
   void Print(std::size_t part_idx, double factor) {
     for (const int id : scene_.layout.parts[part_idx].marker_ids) ResizeMarker(id, factor, &scene_);
   }
-
-  MarkerAdjustmentSummary Adjust(std::uint32_t seed = 1) {
-    SyntheticScene noisy = scene_;
-    AddNoise({0.05, 0, 0, 200, seed}, &noisy);
-    model_ = MakeSceneModel(noisy);
-    return AdjustWithMarkers({}, noisy.layout, {}, &model_);
-  }
-
-  double ScaleError() const {
-    std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
-    for (const auto& [point3D_id, point] : model_.points3D) {
-      const CornerId id = CornerFromPoint3DId(point3D_id);
-      x_in_world.push_back(point.x_in_world);
-      x_in_truth.push_back(scene_.x_in_world.at(id.marker_id)[id.corner]);
-    }
-    return EstimateSim3(x_in_truth, x_in_world).scale - 1.0;
-  }
-
-  SyntheticScene scene_ = TwoParts();
-  Model model_;
 };
 
 TEST_F(PartSizes, PartsThatAgreeAreNotMentioned) {

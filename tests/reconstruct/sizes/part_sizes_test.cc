@@ -66,6 +66,19 @@ TEST(JudgeParts, FewMarkersOfEqualPartsSeldomDisagreeByChance) {
   }
 }
 
+TEST(JudgeParts, WithoutTwoPartsOfThreeMarkersNothingIsCompared) {
+  std::mt19937 random(3);
+  for (const int num_of_first : {2, 5}) {
+    const std::vector<PartOfMarkers> parts = {{"sail", num_of_first, 1.0, 5e-4, 3e-4},
+                                              {"hull", 2, 1.02, 5e-4, 3e-4},
+                                              {"boom", 1, 0.98, 5e-4, 3e-4}};
+    const PartsVerdict verdict =
+        JudgeParts(DrawSizes(parts, &random), kPrintTolerance, kPrintScaleSigma);
+    EXPECT_EQ(verdict.disagreement, "");
+    EXPECT_EQ(verdict.scale_sigma, 0.0);
+  }
+}
+
 TEST(JudgeParts, APartThatIsHardlyKnownHidesNothing) {
   const std::vector<PartOfMarkers> two = {{"sail", 100, 1.003, 5e-4, 3e-4},
                                           {"hull", 60, 1.0, 5e-4, 3e-4}};

@@ -20,14 +20,7 @@ SyntheticScene ZoomedSail(double zoom, int num_frames = 32) {
   SyntheticNoiseOptions noise;
   noise.corner_sigma_px = 0.1;
   AddNoise(noise, &scene);
-  const Eigen::Vector2d middle_px(960, 540);
-  for (std::size_t i = scene.frames.size() / 2; i < scene.frames.size(); ++i) {
-    for (MarkerDetection& marker : scene.frames[i].markers) {
-      for (Eigen::Vector2d& corner_px : marker.corners_in_image_px) {
-        corner_px = middle_px + zoom * (corner_px - middle_px);
-      }
-    }
-  }
+  ZoomFrom(scene.frames.size() / 2, zoom, &scene);
   return scene;
 }
 
