@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "reconstruct/registration/repeated_frames.h"
+
 namespace velamap {
 namespace {
 
@@ -21,8 +23,13 @@ const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
   return it != frame.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
 }
 
+struct TimedFrame {
+  const FrameDetections* detections = nullptr;
+  double time_s = 0.0;
+};
+
 // The two frames before, the frame itself and the two after; null where there is none.
-using FrameWindow = std::array<const FrameDetections*, 5>;
+using FrameWindow = std::array<TimedFrame, 5>;
 constexpr int kMiddle = 2;
 
 // Weights of the values at `times_s`, one of which is 0. The weighted sum is the slope at time 0 of
@@ -46,7 +53,7 @@ Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
 Eigen::VectorXd SlopeWeights(const FrameWindow& window, int reach) {
   std::vector<double> times_s;
   for (int i = kMiddle - reach; i <= kMiddle + reach; ++i) {
-    times_s.push_back(*window[i]->time_s - *window[kMiddle]->time_s);
+    times_s.push_back(window[i].time_s - window[kMiddle].time_s);
   }
   return SlopeWeights(times_s);
 }
@@ -59,7 +66,7 @@ std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window,
   const int reach = static_cast<int>(weights.size()) / 2;
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
   for (int i = -reach; i <= reach; ++i) {
-    const MarkerDetection* seen = FindMarker(*window[kMiddle + i], marker_id);
+    const MarkerDetection* seen = FindMarker(*window[kMiddle + i].detections, marker_id);
     if (seen == nullptr) return std::nullopt;
     velocity += weights[reach + i] * CornerMean(*seen);
   }
@@ -112,6 +119,30 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   return field;
 }
 
+// What the sensor has seen at one time, and the frames that show it: one, and those that repeat it.
+struct Exposure {
+  double time_s = 0.0;
+  std::vector<const DatabaseImage*> frames;
+};
+
+// In the order of time. Photographs are left out.
+std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
+  std::vector<const DatabaseImage*> frames;
+  for (const DatabaseImage& image : images) {
+    if (image.detections.time_s) frames.push_back(&image);
+  }
+  std::sort(frames.begin(), frames.end(), [](const DatabaseImage* a, const DatabaseImage* b) {
+    return *a->detections.time_s < *b->detections.time_s;
+  });
+  const std::vector<bool> is_repeated = FindRepeatedFrames(frames);
+  std::vector<Exposure> exposures;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!is_repeated[i]) exposures.push_back({*frames[i]->detections.time_s, {}});
+    exposures.back().frames.push_back(frames[i]);
+  }
+  return exposures;
+}
+
 // The axis of the image along which the rows of a sensor follow each other. Sensors are wider than
 // high, so portrait frames are turned and show the sensor's rows as columns.
 int ReadoutAxis(const Camera& camera) { return camera.height_px > camera.width_px ? 0 : 1; }
@@ -121,10 +152,10 @@ double ReadoutSizePx(const Camera& camera) { return std::min(camera.width_px, ca
 
 // Empty where the neighbouring frames show too few markers.
 std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
-  const FrameDetections& frame = *window[kMiddle];
+  const FrameDetections& frame = *window[kMiddle].detections;
   std::vector<std::optional<Eigen::Vector2d>> measured;
   const Eigen::VectorXd narrow = SlopeWeights(window, 1);
-  const bool is_wide = window.front() != nullptr && window.back() != nullptr;
+  const bool is_wide = window.front().detections != nullptr && window.back().detections != nullptr;
   const Eigen::VectorXd wide = is_wide ? SlopeWeights(window, kMiddle) : narrow;
   for (const MarkerDetection& marker : frame.markers) {
     auto velocity = MeasureVelocity(window, wide, marker.marker_id);
@@ -164,30 +195,26 @@ void AddShutter(const CornerVelocities& velocities_px_s, const Factor& factor, M
 }  // namespace
 
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images) {
-  std::vector<const DatabaseImage*> frames;
-  for (const DatabaseImage& image : images) {
-    if (image.detections.time_s) frames.push_back(&image);
-  }
-  const auto time_s = [](const DatabaseImage* image) { return *image->detections.time_s; };
-  std::sort(frames.begin(), frames.end(),
-            [&](const DatabaseImage* a, const DatabaseImage* b) { return time_s(a) < time_s(b); });
-  const auto are_near = [&](const DatabaseImage* a, const DatabaseImage* b) {
-    const double step_s = time_s(b) - time_s(a);
-    return step_s > 0 && step_s <= kLongestStep_s && a->camera_id == b->camera_id;
+  const std::vector<Exposure> exposures = ExposuresOf(images);
+  const auto are_near = [&](std::size_t i, std::size_t k) {
+    const double step_s = exposures[k].time_s - exposures[i].time_s;
+    return step_s > 0 && step_s <= kLongestStep_s &&
+           exposures[i].frames.front()->camera_id == exposures[k].frames.front()->camera_id;
+  };
+  const auto timed = [&](std::size_t i) {
+    return TimedFrame{&exposures[i].frames.front()->detections, exposures[i].time_s};
   };
   CornerVelocities velocities;
-  for (std::size_t i = 1; i + 1 < frames.size(); ++i) {
-    if (!are_near(frames[i - 1], frames[i]) || !are_near(frames[i], frames[i + 1])) continue;
-    FrameWindow window{nullptr, &frames[i - 1]->detections, &frames[i]->detections,
-                       &frames[i + 1]->detections, nullptr};
-    if (i >= 2 && are_near(frames[i - 2], frames[i - 1])) {
-      window.front() = &frames[i - 2]->detections;
+  for (std::size_t i = 1; i + 1 < exposures.size(); ++i) {
+    if (!are_near(i - 1, i) || !are_near(i, i + 1)) continue;
+    FrameWindow window{TimedFrame{}, timed(i - 1), timed(i), timed(i + 1), TimedFrame{}};
+    if (i >= 2 && are_near(i - 2, i - 1)) window.front() = timed(i - 2);
+    if (i + 2 < exposures.size() && are_near(i + 1, i + 2)) window.back() = timed(i + 2);
+    for (const DatabaseImage* frame : exposures[i].frames) {
+      window[kMiddle].detections = &frame->detections;
+      std::vector<Eigen::Vector2d> of_image = VelocitiesOf(window);
+      if (!of_image.empty()) velocities[frame->image_id] = std::move(of_image);
     }
-    if (i + 2 < frames.size() && are_near(frames[i + 1], frames[i + 2])) {
-      window.back() = &frames[i + 2]->detections;
-    }
-    std::vector<Eigen::Vector2d> of_image = VelocitiesOf(window);
-    if (!of_image.empty()) velocities[frames[i]->image_id] = std::move(of_image);
   }
   return velocities;
 }

@@ -20,8 +20,9 @@ using CornerVelocities = std::map<ImageId, std::vector<Eigen::Vector2d>>;
 // after it (or one each). The velocities of its corners, and of markers that the neighbouring
 // frames do not show, follow from the affine field that fits all markers of the image best. For a
 // shake of 3 Hz, the straight line through two frames at 30 Hz is 7 % too slow, the polynomial
-// through five 0.5 %. Frames more than 0.15 s apart are not used together; photographs have no
-// velocities. Images without velocities are missing.
+// through five 0.5 %. Frames more than 0.15 s apart are not used together, and repeated ones
+// (repeated_frames.h) count as one frame at the time of the first. Photographs have no velocities.
+// Images without velocities are missing.
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
 // Derivative of a corner's position with respect to the time from the first row of the frame to the

@@ -96,6 +96,49 @@ TEST(CornerVelocities, FollowAFastShake) {
   }
 }
 
+// A clip at 60 Hz whose frames show the field at `times_s`, with the noise that compression adds to
+// a repeated frame.
+std::vector<DatabaseImage> ClipOf(const std::vector<double>& times_s, std::mt19937* random) {
+  const FrameDetections photograph = Photograph(6);
+  std::normal_distribution<double> noise_px(0.0, 0.01);
+  std::vector<DatabaseImage> frames;
+  for (const double time_s : times_s) {
+    frames.push_back(FrameAt(time_s, static_cast<ImageId>(frames.size() + 1), photograph));
+    frames.back().detections.time_s = static_cast<double>(frames.size() - 1) / 60;
+    for (MarkerDetection& marker : frames.back().detections.markers) {
+      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+        x_px += Eigen::Vector2d(noise_px(*random), noise_px(*random));
+      }
+    }
+  }
+  return frames;
+}
+
+TEST(CornerVelocities, AreRightWhereFramesAreRepeated) {
+  constexpr int kNumFrames = 30;
+  constexpr double kTolerance_px_s = 2.0;  // of 80 to 170
+  const FrameDetections photograph = Photograph(6);
+  std::mt19937 random(7);
+  // One frame in eight is dropped, or every second or two of three are repeated.
+  for (const int num_shown : {0, 2, 3}) {
+    std::vector<double> times_s;
+    std::bernoulli_distribution is_dropped(0.125);
+    for (int i = 0; i < kNumFrames; ++i) {
+      const bool is_new = num_shown == 0 ? i == 0 || !is_dropped(random) : i % num_shown == 0;
+      times_s.push_back(is_new ? i / 60.0 : times_s.back());
+    }
+    const CornerVelocities velocities = CornerVelocitiesOf(ClipOf(times_s, &random));
+    EXPECT_GE(velocities.size(), kNumFrames - 6u);
+    for (const auto& [image_id, found_px_s] : velocities) {
+      for (std::size_t i = 0; i < found_px_s.size(); ++i) {
+        const Eigen::Vector2d expected_px_s =
+            FieldVelocity(photograph.markers[i / kNumCorners].corners_in_image_px[i % kNumCorners]);
+        EXPECT_LT((found_px_s[i] - expected_px_s).norm(), kTolerance_px_s) << image_id;
+      }
+    }
+  }
+}
+
 TEST(CornerVelocities, MarkersThatAreMissingBesideMoveWithTheirNeighbours) {
   const FrameDetections photograph = Photograph(8);
   std::vector<DatabaseImage> frames = {FrameAt(-0.03, 1, photograph), FrameAt(0, 2, photograph),
