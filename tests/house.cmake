@@ -33,8 +33,8 @@ house_folder(importer/detect PUBLIC
 house_folder(importer/rotation PUBLIC
   rotation_ambiguity rotation_evidence)
 house_folder(importer/pattern PUBLIC
-  clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture
-  pattern_problem refined_corners)
+  clipped_pixels fit_equations formation_estimate image_formation marker_print pattern_fit
+  pattern_picture pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
   marker_detector read_again)
 house_folder(importer/track PUBLIC
@@ -55,7 +55,7 @@ house_folder(reconstruct/camera PUBLIC
 house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
-  dictionary_doubt frame_order registration registration_options)
+  dictionary_doubt frame_order registration registration_options repeated_frames)
 house_folder(reconstruct/evidence PUBLIC
   layout_evidence marker_rows unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC

@@ -20,7 +20,7 @@ CREATE TABLE image_formation (
     s_amplitude REAL NOT NULL,
     sharpening REAL NOT NULL,
     sharpening_radius_px REAL NOT NULL,
-    ink_spread_sides REAL NOT NULL,
+    ink_spread_mm REAL NOT NULL,
     edge_shift_blurs REAL NOT NULL,
     outline_shift_blurs REAL NOT NULL,
     outline_corner_weight REAL NOT NULL,
@@ -45,7 +45,7 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
       "INSERT INTO image_formation VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
-               found.ink_spread_sides, found.edge_shift_blurs, found.outline_shift_blurs,
+               found.ink_spread_mm, found.edge_shift_blurs, found.outline_shift_blurs,
                found.outline_corner_weight, found.is_inverted ? 1 : 0, found.quiet_zone_cells,
                found.quiet_zone_sigma_cells, found.halo, found.halo_radius_px, estimate.num_samples,
                estimate.noise_gray, estimate.inset_sigma_px);
@@ -54,15 +54,18 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
 
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
-  // Columns that earlier versions lacked, with the values that these versions assumed.
+  // Columns that earlier versions lacked, with the values that these versions assumed. They gave
+  // the ink's spread as a share of the side, which is converted for sides of 100 mm.
   const std::set<std::string> columns = ColumnNames(*database, "image_formation");
   if (columns.empty()) return std::nullopt;
   std::string missing;
-  for (const auto& [column, value] : {std::pair("outline_corner_weight", 1),
-                                      {"edge_shift_blurs", 0},
-                                      {"outline_shift_blurs", 0},
-                                      {"halo", 0},
-                                      {"halo_radius_px", 1}}) {
+  for (const auto& [column, value] :
+       {std::pair("outline_corner_weight", "1"),
+        {"ink_spread_mm", "MAX(-0.3, MIN(0.3, 100 * ink_spread_sides))"},
+        {"edge_shift_blurs", "0"},
+        {"outline_shift_blurs", "0"},
+        {"halo", "0"},
+        {"halo_radius_px", "1"}}) {
     if (columns.count(column) == 0) missing += fmt::format(", {} AS {}", value, column);
   }
   SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation", missing));
@@ -76,8 +79,7 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.s_amplitude = number("s_amplitude", FromTo(-0.15, 0.15));  // the curve rises everywhere
   found.sharpening = number("sharpening", FromTo(-0.9, 10));
   found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
-  found.ink_spread_sides =
-      number("ink_spread_sides", FromTo(-kMaxInkSpreadSides, kMaxInkSpreadSides));
+  found.ink_spread_mm = number("ink_spread_mm", FromTo(-kMaxInkSpread_mm, kMaxInkSpread_mm));
   found.edge_shift_blurs = number("edge_shift_blurs", FromTo(-2, 2));
   found.outline_shift_blurs = number("outline_shift_blurs", FromTo(-2, 2));
   found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));

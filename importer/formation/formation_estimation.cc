@@ -31,7 +31,7 @@ State BestStart(const std::vector<FormationSample>& samples, const FormationPrio
       FormationVector start = priors.mean;
       start[kLogGamma] = std::log(gamma);
       start[kSharpening] = sharpening;
-      State state = FitSamples(samples, start, formation, workers);
+      State state = FitSamples(samples, start, priors.side_mm, formation, workers);
       const double noise = NoiseOf(state);
       if (noise < least_noise) {
         least_noise = noise;
@@ -125,7 +125,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   if (likely.samples.empty()) return Unknown();
   FormationVector start = priors.mean;
   start[kLogGamma] = likely.parameters[kLogGamma];
-  State winner = FitSamples(samples, start, likely.formation->parameters(), workers);
+  State winner =
+      FitSamples(samples, start, priors.side_mm, likely.formation->parameters(), workers);
   if (winner.samples.size() < kMinFormationSamples) return Unknown();
   winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, workers);
   Minimize(priors, kFewIterations, workers, &winner);

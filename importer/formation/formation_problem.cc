@@ -79,13 +79,15 @@ double VarianceOfSum(const std::vector<double>& influences) {
 }  // namespace
 
 FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
-  constexpr double kInkSigma_mm = 0.1, kMaxInkSpread_mm = 0.3;
+  constexpr double kInkSigma_mm = 0.1;
+  constexpr double kMaxInkSpreadSides = 0.1;  // half of a cell of the coarsest markers
   std::vector<double> sides_mm;
-  for (const FormationSample& sample : samples) sides_mm.push_back(sample.side_mm);
+  for (const FormationSample& sample : samples) sides_mm.push_back(sample.print.side_mm);
   const double side_mm = Median(std::move(sides_mm));
   const double ink_sigma = kInkSigma_mm / side_mm;
   const double max_ink = std::min(kMaxInkSpread_mm / side_mm, kMaxInkSpreadSides);
   FormationPriors priors;
+  priors.side_mm = side_mm;
   priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.7);
   priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2, 0.05, 0.4;
   // A halo of less than 2 px is part of the blur. S is below zero where a camera lifts shadows and

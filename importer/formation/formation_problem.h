@@ -15,6 +15,7 @@ namespace velamap {
 // sigma, and limits.
 struct FormationPriors {
   FormationVector mean, sigma, min, max;
+  double side_mm = 0.0;  // as in FormationState
 };
 
 // The prior of the ink's spread is a length on paper; the median side of the samples converts it

@@ -85,12 +85,12 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
   MarkerQuad quad = found;
   for (Eigen::Vector2d& corner : quad.corners_px) corner -= Eigen::Vector2d(cut.x, cut.y);
   quad = RefineAndReadAgain(sample.gray, quad, detector.dictionary, detector.border_bits,
-                            ImageFormation())
+                            ImageFormation(), detector.sides_mm)
              .quad;
   const auto id = static_cast<std::size_t>(quad.marker_id);
-  sample.cells = detector.looks[id].cells;
-  if (detector.sides_mm[id] > 0) sample.side_mm = detector.sides_mm[id];
-  const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.cells});
+  sample.print.cells = detector.looks[id].cells;
+  if (detector.sides_mm[id] > 0) sample.print.side_mm = detector.sides_mm[id];
+  const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.print.cells});
   if (!aligned) return std::nullopt;
   sample.corners_px = *aligned;
   return sample;
@@ -220,13 +220,12 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   const ImageFormationParameters& found = estimate.parameters;
   LogInfo(
       "camera and print, from {} markers: halo {:+.3f} over {:.1f} px, gamma {:.2f}, S-curve "
-      "{:+.3f}, sharpening {:.2f} over {:.1f} px, ink spread {:+.2f} % of the side, edges moved by "
+      "{:+.3f}, sharpening {:.2f} over {:.1f} px, ink spread {:+.3f} mm, edges moved by "
       "{:+.2f} and outlines by {:+.2f} blur sigmas, quiet zone {:.2f} cells; residuals {:.1f} grey "
       "levels",
       estimate.num_samples, found.halo, found.halo_radius_px, found.gamma, found.s_amplitude,
-      found.sharpening, found.sharpening_radius_px, 100 * found.ink_spread_sides,
-      found.edge_shift_blurs, found.outline_shift_blurs, found.quiet_zone_cells,
-      estimate.noise_gray);
+      found.sharpening, found.sharpening_radius_px, found.ink_spread_mm, found.edge_shift_blurs,
+      found.outline_shift_blurs, found.quiet_zone_cells, estimate.noise_gray);
   return estimate;
 }
 

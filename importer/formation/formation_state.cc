@@ -46,12 +46,13 @@ void FitAll(std::size_t count, const FitWorkers& workers,
 }
 
 // `formation` with the parameters of the vector.
-ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
+ImageFormationParameters With(const FormationVector& p, double side_mm,
+                              ImageFormationParameters formation) {
   formation.gamma = std::exp(p[kLogGamma]);
   formation.s_amplitude = p[kSAmplitude];
   formation.sharpening = p[kSharpening];
   formation.sharpening_radius_px = std::exp(p[kLogRadius]);
-  formation.ink_spread_sides = p[kInkSpread];
+  formation.ink_spread_mm = p[kInkSpread] * side_mm;
   formation.edge_shift_blurs = p[kEdgeShift];
   formation.halo = p[kHalo];
   formation.halo_radius_px = std::exp(p[kLogHaloRadius]);
@@ -61,10 +62,13 @@ ImageFormationParameters With(const FormationVector& p, ImageFormationParameters
 }  // namespace
 
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
-                          const ImageFormationParameters& formation, const FitWorkers& workers) {
+                          double side_mm, const ImageFormationParameters& formation,
+                          const FitWorkers& workers) {
   FormationState state;
   state.parameters = start;
-  state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
+  state.side_mm = side_mm;
+  state.formation =
+      std::make_shared<const ImageFormation>(With(state.parameters, side_mm, formation));
   std::vector<std::optional<FittedSample>> fitted(samples.size());
   FitAll(samples.size(), workers, [&](std::size_t i) {
     fitted[i] = FitSample(samples[i], *state.formation);
@@ -79,8 +83,8 @@ FormationState FitSamples(const std::vector<FormationSample>& samples, const For
 FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
                           const FitWorkers& workers) {
-  FormationState moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
-                       nullptr};
+  FormationState moved{parameters, state.side_mm, std::make_shared<const ImageFormation>(formation),
+                       state.samples, nullptr};
   FitAll(moved.samples.size(), workers, [&](std::size_t i) {
     RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
@@ -89,7 +93,8 @@ FormationState FittedWith(const ImageFormationParameters& formation,
 
 FormationState MovedTo(const FormationVector& parameters, const FormationState& state,
                        const FitWorkers& workers) {
-  return FittedWith(With(parameters, state.formation->parameters()), parameters, state, workers);
+  return FittedWith(With(parameters, state.side_mm, state.formation->parameters()), parameters,
+                    state, workers);
 }
 
 std::vector<double> QuietZones(const FormationState& state) {

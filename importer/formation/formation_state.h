@@ -31,6 +31,7 @@ using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
 // The parameters that all samples share, and the samples fitted with them.
 struct FormationState {
   FormationVector parameters;
+  double side_mm = 0.0;  // the unit of the ink spread in `parameters`: a usual side of the markers
   std::shared_ptr<const ImageFormation> formation;
   std::vector<FittedSample> samples;
   // The states after a step of each parameter alone, for derivatives by differences; null until
@@ -38,10 +39,11 @@ struct FormationState {
   mutable std::shared_ptr<const std::vector<FormationState>> moved;
 };
 
-// The samples fitted with `formation`, which gets the parameters `start`. Samples that cannot
-// be fitted are left out.
+// The samples fitted with `formation`, which gets the parameters `start`; `side_mm` as in the
+// state. Samples that cannot be fitted are left out.
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
-                          const ImageFormationParameters& formation, const FitWorkers& workers);
+                          double side_mm, const ImageFormationParameters& formation,
+                          const FitWorkers& workers);
 
 // The same samples fitted with another image formation, which has these `parameters`.
 FormationState FittedWith(const ImageFormationParameters& formation,

@@ -1,6 +1,6 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
-//   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
+//   print      dark cells reach ink_spread_mm beyond their outlines
 //   lens       scatters the share `halo` of the light by a Gaussian of halo_radius_px
 //   camera     edges move by edge_shift_blurs (sigmas of the blur) towards the light side, and the
 //              outline of the black square by a further outline_shift_blurs outwards
@@ -24,7 +24,7 @@ struct ImageFormationParameters {
   double s_amplitude = 0.0;
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
-  double ink_spread_sides = 0.0;
+  double ink_spread_mm = 0.0;
   // Noise filters, compression and tone curves of other shapes move edges by a fraction of their
   // blur, which is the same in all directions of the image. Ink moves them by a length on the
   // paper, which is foreshortened on a slanted marker.
@@ -47,8 +47,8 @@ struct ImageFormationParameters {
   double halo_radius_px = 2.7;
 };
 
-// No estimate has more ink than this, which is half of a cell of the coarsest markers.
-inline constexpr double kMaxInkSpreadSides = 0.1;
+// No estimate has more ink than this.
+inline constexpr double kMaxInkSpread_mm = 0.3;
 
 struct FormationEstimate {
   ImageFormationParameters parameters;

@@ -77,11 +77,13 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> MismatchedCells(const PatternProbl
 }  // namespace
 
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells, const ImageFormation& formation) {
+                                         const MarkerPrint& print,
+                                         const ImageFormation& formation) {
+  const cv::Mat& cells = print.cells;
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols);
   PatternMinimum minimum;
   std::optional<PatternProblem> problem =
-      MakePatternProblem(gray, corners_px, cells, formation, &minimum);
+      MakePatternProblem(gray, corners_px, print, formation, &minimum);
   if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
   const double rms_gray = minimum.equations.Rms();
   if ((HasClippedPixels(gray, problem->box) &&

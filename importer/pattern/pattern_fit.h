@@ -21,14 +21,14 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/pattern/image_formation.h"
+#include "importer/pattern/marker_print.h"
 #include "importer/pattern/refined_corners.h"
 
 namespace velamap {
 
-// `cells`: 8-bit, square, with the black border, zero for black; row 0 runs from corner 0 to 1 and
-// column 0 from corner 0 to 3. Corners in OpenCV's pixel frame. Nothing if the marker leaves the
-// image, has too little contrast or does not look like its cells.
+// Corners in OpenCV's pixel frame. Nothing if the marker leaves the image, has too little contrast
+// or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells, const ImageFormation& formation);
+                                         const MarkerPrint& print, const ImageFormation& formation);
 
 }  // namespace velamap

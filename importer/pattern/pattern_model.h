@@ -45,6 +45,7 @@ struct PatternModel {
   Lightness surround;     // of the outermost ring, relative to light; the other cells are zero
   Eigen::Vector2d center_px;
   double diagonal_px = 0.0;
+  double side_mm = 100.0;              // of the black square
   double ink_spread_cells = 0.0;       // how far dark cells reach beyond their outlines
   double edge_shift_blurs = 0.0;       // how far the camera moves them further, in blur sigmas
   double outline_shift_blurs = 0.0;    // how far the outline of the square lies further outside

@@ -123,15 +123,16 @@ bool ReadSurroundingsWrongly(const PatternMinimum& minimum) {
 }  // namespace
 
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
-                                                 const cv::Mat& cells,
+                                                 const MarkerPrint& print,
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum) {
   PatternProblem problem;
-  problem.cells = cells;
-  problem.model.num_cells = cells.rows;
+  problem.cells = print.cells;
+  problem.model.num_cells = print.cells.rows;
+  problem.model.side_mm = print.side_mm;
   if (problem.model.num_cells + 2 * kRing > kMaxRingedCells) return std::nullopt;
   const UnitSquareMap map(corners_px);
-  const auto box = CoveredBox(corners_px, map, cells.rows, gray);
+  const auto box = CoveredBox(corners_px, map, print.cells.rows, gray);
   if (!box) return std::nullopt;
   problem.box = *box;
   // The surroundings are read up to two cells away.
@@ -162,7 +163,7 @@ void SetFormation(const ImageFormation& formation, PatternProblem* problem) {
   const ImageFormationParameters& parameters = formation.parameters();
   PatternModel& model = problem->model;
   model.formation = &formation;
-  model.ink_spread_cells = parameters.ink_spread_sides * model.num_cells;
+  model.ink_spread_cells = parameters.ink_spread_mm / model.side_mm * model.num_cells;
   model.edge_shift_blurs = parameters.edge_shift_blurs;
   model.outline_shift_blurs = parameters.outline_shift_blurs;
   model.outline_corner_weight = parameters.outline_corner_weight;

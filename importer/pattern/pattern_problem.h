@@ -9,6 +9,7 @@
 #include "importer/geometry/quad.h"
 #include "importer/pattern/fit_equations.h"
 #include "importer/pattern/image_formation.h"
+#include "importer/pattern/marker_print.h"
 #include "importer/pattern/pattern_model.h"
 
 namespace velamap {
@@ -36,10 +37,10 @@ struct PatternMinimum {
   PatternEquations equations;
 };
 
-// `cells` and corners as in FitPattern(). Nothing where the marker leaves the image, has too many
+// Corners as in FitPattern(). Nothing where the marker leaves the image, has too many
 // cells or too little contrast. `formation` must outlive the problem. Sets the initial parameters.
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
-                                                 const cv::Mat& cells,
+                                                 const MarkerPrint& print,
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum);
 

@@ -27,6 +27,13 @@ struct PrimaryPicture {
   std::string damage;
 };
 
+// Some of libheif's messages end with a line feed.
+std::string DamageText(const heif_error& error) {
+  std::string text = error.message;
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return text;
+}
+
 template <typename Reader>
 PrimaryPicture OpenPrimary(const Reader& read) {
   PrimaryPicture primary{HeifPtr<heif_context>(heif_context_alloc()), nullptr, ""};
@@ -37,7 +44,7 @@ PrimaryPicture OpenPrimary(const Reader& read) {
     error = heif_context_get_primary_image_handle(primary.context.get(), &handle);
   }
   primary.handle.reset(handle);
-  if (error.code != heif_error_Ok) primary.damage = error.message;
+  if (error.code != heif_error_Ok) primary.damage = DamageText(error);
   return primary;
 }
 
@@ -75,7 +82,7 @@ cv::Mat DecodeHeif(const std::vector<std::uint8_t>& bytes, std::string* damage) 
                                              heif_chroma_interleaved_RGB, options.get());
   const HeifPtr<heif_image> image(decoded);
   if (error.code != heif_error_Ok) {
-    *damage = error.message;
+    *damage = DamageText(error);
     return {};
   }
   int stride = 0;

@@ -168,10 +168,10 @@ std::optional<Fit> FitBySides(const cv::Mat& gray, const QuadCorners& corners_px
 
 // Moves the sides from where the edges appear to where they are printed. The shifts belong to fits
 // of whole markers; half of them counts as 1 sigma here.
-void UndoShiftOfEdges(const ImageFormationParameters& formation, Fit* fit) {
+void UndoShiftOfEdges(const ImageFormationParameters& formation, double side_mm, Fit* fit) {
   const QuadCorners apparent_px = fit->corners.corners_px;
   const double shift_px =
-      formation.ink_spread_sides * QuadMeanSide(apparent_px) +
+      formation.ink_spread_mm / side_mm * QuadMeanSide(apparent_px) +
       (formation.edge_shift_blurs + formation.outline_shift_blurs) * fit->blur_px;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const Eigen::Vector2d to_next =
@@ -193,11 +193,13 @@ std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const cv::Mat& cells, const ImageFormation& formation) {
+                                            const MarkerPrint& print,
+                                            const ImageFormation& formation) {
+  const cv::Mat& cells = print.cells;
   if (!HasCells(corners_px, cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
   QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
-  const auto fitted = FitPattern(gray, start_px, cells, formation);
+  const auto fitted = FitPattern(gray, start_px, print, formation);
   if (fitted && MaxCornerShift(fitted->corners_px, corners_px) <=
                     MaxAllowedShiftPx(cell_px, kMaxPatternShiftPx)) {
     return fitted;
@@ -207,7 +209,7 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
   for (Eigen::Vector2d& corner : start_px) corner -= part.origin_px;
   auto fit = FitBySides(part.gray, start_px, cells.rows);
   if (!fit) return std::nullopt;
-  UndoShiftOfEdges(formation.parameters(), &*fit);
+  UndoShiftOfEdges(formation.parameters(), print.side_mm, &*fit);
   for (Eigen::Vector2d& corner : fit->corners.corners_px) corner += part.origin_px;
   return fit->corners;
 }

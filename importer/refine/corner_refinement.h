@@ -15,6 +15,7 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/pattern/image_formation.h"
+#include "importer/pattern/marker_print.h"
 #include "importer/pattern/refined_corners.h"
 
 namespace velamap {
@@ -26,12 +27,12 @@ namespace velamap {
 std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells);
 
-// Fits the whole marker (`cells` and corners as for FitPattern()), or its sides where that fails.
+// Fits the whole marker (corners as for FitPattern()), or its sides where that fails.
 // `gray`: 8-bit, dark markers on light ground. The sides are fitted in linear light, because a tone
 // curve shifts edges, and then moved back by ink spread and the other known shifts of edges.
 // Returns nothing if both fail or move a corner too far.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const cv::Mat& cells,
+                                            const MarkerPrint& print,
                                             const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

@@ -42,14 +42,15 @@ struct FittedDetection {
 std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const MarkerQuad& found,
                                             const Dictionary& dictionary, int border_bits,
                                             const ArucoDetectionOptions& options,
-                                            const ImageFormation& formation) {
+                                            const ImageFormation& formation,
+                                            const std::vector<double>& sides_mm) {
   ReadMarker read{found, {}};
   auto& [quad, refined] = read;
   const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
   if (options.corner_refinement == CornerRefinement::kNone) {
     refined = RefinedCorners{found.corners_px};
   } else if (fits_edges) {
-    read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation);
+    read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation, sides_mm);
   }
   const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
   const bool is_fitted = refined.has_value();
@@ -102,14 +103,15 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
                                            const ArucoDetectionOptions& options,
-                                           const ImageFormation& formation) {
+                                           const ImageFormation& formation,
+                                           const std::vector<double>& sides_mm) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
   const cv::Mat dark_on_light = options.inverted ? cv::Mat(~gray) : gray;
   std::vector<FittedDetection> fitted;
   for (const MarkerQuad& quad : quads) {
     const StageTimer timer(ImportStage::kRefine);
     const auto reading =
-        RefineMarker(dark_on_light, quad, dictionary, border_bits, options, formation);
+        RefineMarker(dark_on_light, quad, dictionary, border_bits, options, formation, sides_mm);
     if (reading) AddReading(*reading, &fitted);
   }
   std::vector<MarkerDetection> detections;

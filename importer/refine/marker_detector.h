@@ -21,11 +21,13 @@ namespace velamap {
 // refinement sets the sigma of each corner, or marks the detection as a fallback. Of several
 // readings at one place, the one that fits best is kept. Leaves out markers that only a second look
 // has found and that cannot be fitted. Ids may occur more than once (duplicates.h). Thread-safe;
-// colours are left zero.
+// colours are left zero. `sides_mm`, by id, are the sides of the printed squares; where one is
+// missing or 0, it is 100 mm.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
                                            const ArucoDetectionOptions& options,
-                                           const ImageFormation& formation = ImageFormation());
+                                           const ImageFormation& formation = ImageFormation(),
+                                           const std::vector<double>& sides_mm = {});
 
 }  // namespace velamap

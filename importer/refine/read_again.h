@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -24,8 +25,10 @@ struct ReadMarker {
 
 // `gray`: 8-bit, with dark markers on light paper. The id changes where the cells that the image
 // shows are the code of another marker of the dictionary, and this one fits clearly better.
+// `sides_mm` as in RefineMarkers().
 ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
                               const Dictionary& dictionary, int border_bits,
-                              const ImageFormation& formation);
+                              const ImageFormation& formation,
+                              const std::vector<double>& sides_mm = {});
 
 }  // namespace velamap

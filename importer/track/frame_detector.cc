@@ -241,7 +241,7 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
        RefineMarkers(frame.gray, quads, detector.dictionary, detector.border_bits, detector.options,
-                     detector.formation)) {
+                     detector.formation, detector.sides_mm)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

@@ -175,7 +175,7 @@ std::vector<BadInput> ImageFormations() {
       {"is_inverted", "7"},
       {"noise_gray", "-1"},
       {"inset_sigma_px", "'text'"},
-      {"ink_spread_sides", "0.5"},
+      {"ink_spread_mm", "0.5"},
       {"edge_shift_blurs", "9"},
       {"outline_shift_blurs", "9"},
       {"outline_corner_weight", "2"},

@@ -10,6 +10,7 @@ velamap_test(
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
     formation/formation_scenes.cc
+    formation/printed_ink_test.cc
     formation/processed_pictures_test.cc
     lanes/float_lanes_test.cc
     lanes/normal_lanes_test.cc
@@ -20,4 +21,5 @@ velamap_test(
     detect/marker_alignment_test.cc
     refine/marker_grid.cc
     ../support/render/marker_renderer_test.cc
-    ../support/render/picture_effects_test.cc)
+    ../support/render/picture_effects_test.cc
+  LIBRARIES velamap_clip_support)

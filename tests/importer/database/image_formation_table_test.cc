@@ -32,7 +32,7 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->parameters.s_amplitude, 0.02);
   EXPECT_EQ(read->parameters.sharpening, 0.4);
   EXPECT_EQ(read->parameters.sharpening_radius_px, 1.2);
-  EXPECT_EQ(read->parameters.ink_spread_sides, -0.001);
+  EXPECT_EQ(read->parameters.ink_spread_mm, -0.001);
   EXPECT_EQ(read->parameters.edge_shift_blurs, -0.2);
   EXPECT_EQ(read->parameters.outline_shift_blurs, 0.1);
   EXPECT_EQ(read->parameters.outline_corner_weight, 0.3);
@@ -51,19 +51,19 @@ TEST(ImageFormationTable, HoldsTheMostInkThatAnEstimateOfTinyMarkersGives) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   FormationSample sample;
-  sample.side_mm = 1.0;
+  sample.print.side_mm = 1.0;
   FormationEstimate estimate;
-  double& ink_spread = estimate.parameters.ink_spread_sides;
+  double& ink_spread = estimate.parameters.ink_spread_mm;
   ink_spread = PriorsFor({sample}).max[kInkSpread];
   EXPECT_GT(ink_spread, 0.0);
   ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation(estimate);
   const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->parameters.ink_spread_sides, ink_spread);
+  EXPECT_EQ(read->parameters.ink_spread_mm, ink_spread);
 }
 
-// The corners of outlines had no weight of their own, edges no shift but that of the ink, and
-// lenses no halo.
+// The corners of outlines had no weight of their own, edges no shift but that of the ink, which was
+// a share of the side, and lenses no halo.
 TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
   const TempDir dir;
   const std::string path = dir / "database.db";
@@ -75,6 +75,8 @@ TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
     database.exec("ALTER TABLE image_formation DROP COLUMN outline_shift_blurs");
     database.exec("ALTER TABLE image_formation DROP COLUMN halo");
     database.exec("ALTER TABLE image_formation DROP COLUMN halo_radius_px");
+    database.exec("ALTER TABLE image_formation RENAME COLUMN ink_spread_mm TO ink_spread_sides");
+    database.exec("UPDATE image_formation SET ink_spread_sides = 0.001");
   }
   const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
   ASSERT_TRUE(read);
@@ -82,6 +84,7 @@ TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
   EXPECT_EQ(read->parameters.edge_shift_blurs, 0.0);
   EXPECT_EQ(read->parameters.outline_shift_blurs, 0.0);
   EXPECT_EQ(read->parameters.halo, 0.0);
+  EXPECT_NEAR(read->parameters.ink_spread_mm, 0.1, 1e-12);
   EXPECT_NO_THROW(ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation({}));
 }
 

@@ -82,7 +82,7 @@ TEST(LocateMarker, AQuadWithoutAreaOrPlaceIsNone) {
   for (const QuadCorners& quad : {point, nowhere}) {
     EXPECT_FALSE(LocateMarker(grid.image, quad, {grid.cells[0]}, 8));
     EXPECT_FALSE(AlignSides(grid.image, quad, {grid.cells[0]}));
-    EXPECT_FALSE(RefineCorners(grid.image, quad, grid.cells[0]));
+    EXPECT_FALSE(RefineCorners(grid.image, quad, {grid.cells[0]}));
   }
 }
 
@@ -105,8 +105,8 @@ StartDependence CompareStarts(const MarkerGrid& grid) {
   constexpr double kSame_px = 0.01;
   StartDependence result;
   for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-    const auto from_truth = RefineCorners(grid.image, grid.truth[k], grid.cells[k]);
-    const auto from_start = RefineCorners(grid.image, grid.starts[k], grid.cells[k]);
+    const auto from_truth = RefineCorners(grid.image, grid.truth[k], {grid.cells[k]});
+    const auto from_start = RefineCorners(grid.image, grid.starts[k], {grid.cells[k]});
     if (!from_truth || !from_start) continue;
     ++result.num_compared;
     result.num_same += MaxCornerShift(from_truth->corners_px, from_start->corners_px) < kSame_px;

@@ -34,16 +34,17 @@ std::vector<FormationSample> Samples(const MarkerGrid& grid) {
   constexpr std::size_t kNumSamples = 16;
   std::vector<FormationSample> samples;
   for (std::size_t k = 0; k < std::min(kNumSamples, grid.starts.size()); ++k) {
-    samples.push_back({grid.image, grid.starts[k], grid.cells[k]});
+    samples.push_back({grid.image, grid.starts[k], {grid.cells[k]}});
   }
   return samples;
 }
 
-double SideBias(const MarkerGrid& grid, const ImageFormation& formation) {
+double SideBias(const MarkerGrid& grid, const ImageFormation& formation, double side_mm) {
   double sum = 0;
   int count = 0;
   for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-    const auto refined = RefineCorners(grid.image, grid.starts[k], grid.cells[k], formation);
+    const auto refined =
+        RefineCorners(grid.image, grid.starts[k], {grid.cells[k], side_mm}, formation);
     if (!refined) continue;
     sum += QuadMeanSide(refined->corners_px) - QuadMeanSide(grid.truth[k]);
     ++count;

@@ -17,6 +17,6 @@ MarkerGridOptions DrawScene(std::mt19937* random);
 std::vector<FormationSample> Samples(const MarkerGrid& grid);
 
 // Mean error of the side in px.
-double SideBias(const MarkerGrid& grid, const ImageFormation& formation);
+double SideBias(const MarkerGrid& grid, const ImageFormation& formation, double side_mm = 100.0);
 
 }  // namespace velamap

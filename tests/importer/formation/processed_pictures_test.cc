@@ -30,7 +30,7 @@ double SlantBias(const MarkerGrid& grid, double side_px, const ImageFormation& f
                            0.5 * (q[3] - q[0] + q[2] - q[1]).norm());
   };
   for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-    const auto refined = RefineCorners(grid.image, grid.starts[k], grid.cells[k], formation);
+    const auto refined = RefineCorners(grid.image, grid.starts[k], {grid.cells[k]}, formation);
     if (!refined) continue;
     const Eigen::Vector2d truth_px = extents(grid.truth[k]);
     const Eigen::Vector2d error_px = extents(refined->corners_px) - truth_px;
@@ -83,8 +83,8 @@ TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
     cv::bilateralFilter(grid.image.clone(), grid.image, 5, 18, 1.2);
     ImageFormationParameters found = EstimateFormation(Samples(grid), false).parameters;
     const double bias_px = SlantBias(grid, scene.side_px, ImageFormation(found));
-    found.ink_spread_sides +=
-        found.edge_shift_blurs * scene.rendering.blur_sigma_px / scene.side_px;
+    found.ink_spread_mm += MarkerPrint().side_mm * found.edge_shift_blurs *
+                           scene.rendering.blur_sigma_px / scene.side_px;
     found.edge_shift_blurs = 0.0;
     const double as_ink_px = SlantBias(grid, scene.side_px, ImageFormation(found));
     EXPECT_LT(std::abs(bias_px), 0.07) << draw;

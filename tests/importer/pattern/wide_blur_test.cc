@@ -19,7 +19,7 @@ TEST(FitPattern, AWideBlurOfLargeMarkersMovesNoSide) {
     const MarkerGrid grid = MakeMarkerGrid(options);
     double bias_px = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-      const auto fitted = FitPattern(grid.image, grid.starts[k], grid.cells[k], ImageFormation());
+      const auto fitted = FitPattern(grid.image, grid.starts[k], {grid.cells[k]}, ImageFormation());
       ASSERT_TRUE(fitted) << blur_px;
       bias_px += QuadMeanSide(fitted->corners_px) - QuadMeanSide(grid.truth[k]);
       for (std::size_t i = 0; i < kNumCorners; ++i) {

@@ -64,6 +64,7 @@ TEST(HeifPicture, ACutOrTooLargeFileGivesAReason) {
     reason.clear();
     EXPECT_TRUE(DecodeImageFile(path, &reason).empty()) << part;
     EXPECT_FALSE(reason.empty()) << part;
+    EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
     EXPECT_FALSE(ReadPictureMetadata(path).focal_in_diagonals);
   }
 }

@@ -47,7 +47,7 @@ Quality Measure(const MarkerGrid& grid, const Refiner& refine) {
 
 Quality MeasureRefineCorners(const MarkerGrid& grid) {
   return Measure(grid, [](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
-    return RefineCorners(gray, start, cells);
+    return RefineCorners(gray, start, {cells});
   });
 }
 
@@ -126,7 +126,7 @@ TEST(RefineCorners, OutlinesFoundFarInsideSmallMarkersGrow) {
       const ImageFormation formation(parameters);
       const Quality fitted =
           Measure(grid, [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
-            return RefineCorners(gray, start, cells, formation);
+            return RefineCorners(gray, start, {cells}, formation);
           });
       EXPECT_LE(fitted.num_failed, fitted.num_fitted / 50);
       EXPECT_LT(std::abs(fitted.bias_px), 0.05);
@@ -155,7 +155,7 @@ TEST(RefineCorners, BrightClothBehindNarrowQuietZonesMovesNoCorner) {
       const Quality fitted =
           Measure(MakeMarkerGrid(options),
                   [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
-                    return RefineCorners(gray, start, cells, formation);
+                    return RefineCorners(gray, start, {cells}, formation);
                   });
       EXPECT_EQ(fitted.num_failed, 0);
       EXPECT_LT(std::abs(fitted.bias_px), 0.004);
@@ -229,7 +229,7 @@ TEST(RefineCorners, MarkersAtTheBorderOfThePictureAreAsGoodAsOthers) {
                                    const Eigen::Vector2d shift_px(low.x, low.y);
                                    QuadCorners cut_start = start;
                                    for (Eigen::Vector2d& corner : cut_start) corner -= shift_px;
-                                   auto refined = RefineCorners(cut, cut_start, cells, formation);
+                                   auto refined = RefineCorners(cut, cut_start, {cells}, formation);
                                    if (!refined) return std::nullopt;
                                    for (Eigen::Vector2d& corner : refined->corners_px)
                                      corner += shift_px;
@@ -253,8 +253,8 @@ TEST(RefineCorners, SidesAloneAreFittedToLight) {
   std::rotate(grid.cells.begin(), grid.cells.begin() + 1, grid.cells.end());
   const auto measure = [&](const ImageFormation& formation) {
     return Measure(grid, [&](const cv::Mat& gray, const QuadCorners& start, const cv::Mat& cells) {
-      EXPECT_FALSE(FitPattern(gray, start, cells, formation));
-      return RefineCorners(gray, start, cells, formation);
+      EXPECT_FALSE(FitPattern(gray, start, {cells}, formation));
+      return RefineCorners(gray, start, {cells}, formation);
     });
   };
   const Quality fitted = measure(ImageFormation(options.rendering.camera));
@@ -284,17 +284,17 @@ TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
   for (const MarkerGrid* grid : {&small, &large}) {
     const QuadCorners& start = grid->truth[0];
     const cv::Mat& cells = grid->cells[0];
-    ASSERT_TRUE(RefineCorners(grid->image, start, cells));
+    ASSERT_TRUE(RefineCorners(grid->image, start, {cells}));
     const cv::Mat flat(grid->image.size(), CV_8UC1, cv::Scalar(100));
-    EXPECT_FALSE(RefineCorners(flat, start, cells));
-    EXPECT_FALSE(RefineCorners(255 - grid->image, start, cells));
+    EXPECT_FALSE(RefineCorners(flat, start, {cells}));
+    EXPECT_FALSE(RefineCorners(255 - grid->image, start, {cells}));
     QuadCorners elsewhere = start, outside = start;
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       elsewhere[i].x() += 0.5 * QuadMeanSide(start);
       outside[i].x() -= start[0].x() + 100;
     }
-    EXPECT_FALSE(RefineCorners(grid->image, elsewhere, cells));
-    EXPECT_FALSE(RefineCorners(grid->image, outside, cells));
+    EXPECT_FALSE(RefineCorners(grid->image, elsewhere, {cells}));
+    EXPECT_FALSE(RefineCorners(grid->image, outside, {cells}));
   }
 }
 

@@ -209,7 +209,7 @@ CornerAccuracy MeasureCorners(const CornerCase& parameters) {
     grid.image = Compressed(grid.image, parameters.jpeg_quality);
     for (std::size_t k = 0; k < grid.truth.size(); ++k) {
       subpix.Add(SubpixCorners(grid.image, grid.starts[k], grid.cells[k].rows), grid.truth[k]);
-      const auto refined = RefineCorners(grid.image, grid.starts[k], grid.cells[k]);
+      const auto refined = RefineCorners(grid.image, grid.starts[k], {grid.cells[k]});
       if (!refined) {
         ++accuracy.num_failed;
         continue;
