@@ -262,7 +262,7 @@ std::vector<MeasuredMarkerSides> MeasureSides(const Model& model, const Layout& 
   return markers;
 }
 
-void IntersectCorners(double apparent_inset_px, Model* model) {
+void RetriangulateCorners(double apparent_inset_px, Model* model) {
   if (apparent_inset_px != 0) {
     for (ModelImage& image : model->images) MoveOut(apparent_inset_px, &image);
   }

@@ -39,6 +39,6 @@ std::vector<MeasuredMarkerSides> MeasureSides(const Model& model, const Layout& 
 // because an adjustment that knows the size of the markers has pulled the points to that size.
 // First moves the image points out of the marker by `apparent_inset_px` (AdjustmentUncertainty).
 // Points that fewer than two images see, or that do not converge, stay.
-void IntersectCorners(double apparent_inset_px, Model* model);
+void RetriangulateCorners(double apparent_inset_px, Model* model);
 
 }  // namespace velamap

@@ -28,7 +28,7 @@ std::vector<MeasuredMarkerSides> MeasureForShape(const MarkerShape& shape, const
     markers = MeasureSides(*model, layout);
   } else {
     Model intersected = *model;
-    IntersectCorners(uncertainty->apparent_inset_px, &intersected);
+    RetriangulateCorners(uncertainty->apparent_inset_px, &intersected);
     markers = MeasureSides(intersected, layout);
   }
   for (MeasuredMarkerSides& marker : markers) {

@@ -49,7 +49,7 @@ IntrinsicsVerdict JudgeIntrinsics(MarkerSolution trial, const FreeIntrinsics& fr
   Minimize(1e-4, &trial);
   const auto linearization = Linearize(trial);
   // Errors that corners have in common explain a part of the improvement.
-  const double factor = CorrelationFactor(trial, *linearization);
+  const double factor = ShapeCorrelationFactor(trial, *linearization);
   verdict.needed *= factor * factor;
   verdict.determined = free;
   for (const auto& [camera_id, camera] : trial.calibration) {

@@ -74,7 +74,7 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution) {
   }
   const auto nearest =
       static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
-  const double correlation = CorrelationFactor(trials[nearest], *Linearize(trials[nearest]));
+  const double correlation = ShapeCorrelationFactor(trials[nearest], *Linearize(trials[nearest]));
   const double per_parameter = 2.0 * correlation * correlation;
   std::size_t best = 0;
   std::vector<double> criteria;

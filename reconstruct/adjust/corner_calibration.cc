@@ -28,7 +28,7 @@ double CornerFactor(double variance_factor, double redundancy) {
 double CalibrateRobustly(MarkerSolution* solution) {
   const double before = solution->weights.corner_factor;
   const VarianceFactor variance =
-      RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
+      RobustVarianceFactor(ResidualsOfModel(solution->model, *solution), solution->model);
   const double after = CornerFactor(variance.value * before * before, variance.redundancy);
   solution->weights.corner_factor = after;
   LogDebug("corner sigmas times {:.4f}", after);

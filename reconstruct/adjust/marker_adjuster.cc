@@ -208,7 +208,7 @@ void MarkerAdjuster::Finish() {
   MoveToFirstCamera(&solution_.model);
   CornerCalibration calibration = CalibrateBySquares(&solution_);
   auto linearization = std::move(calibration.linearization);
-  const double correlation_factor = CorrelationFactor(solution_, *linearization);
+  const double correlation_factor = ShapeCorrelationFactor(solution_, *linearization);
   if (correlation_factor > 1.0) {
     solution_.weights.corner_factor *= correlation_factor;
     Minimize(1e-9, &solution_);
@@ -268,7 +268,7 @@ int MarkerAdjuster::ReviseCorners() {
   for (const RemovedObservation& observation : summary_.removed) {
     if (!RestoreObservation(observation, kAnyError, &candidate)) removed.push_back(observation);
   }
-  RemoveOutliers(EvaluateCorners(candidate, solution_), solution_.options.outlier_sigmas,
+  RemoveOutliers(ResidualsOfModel(candidate, solution_), solution_.options.outlier_sigmas,
                  &candidate, &removed);
   const std::set<Key> after = keys_of(removed);
   std::vector<Key> changes;

@@ -105,7 +105,8 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
   return linearization;
 }
 
-double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization) {
+double ShapeCorrelationFactor(const MarkerSolution& solution,
+                              const MarkerLinearization& linearization) {
   return CorrelationFactor(
       linearization.state, linearization.problem, linearization.jacobian, linearization.covariance,
       GroupImages(solution.model, kNumCorrelationGroups), solution.options.num_threads);
@@ -121,7 +122,7 @@ double ShutterCorrelationFactor(const MarkerSolution& solution,
                                  solution.options.num_threads);
 }
 
-std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution) {
+std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {
   MarkerState state = MakeState(solution, model);
   return EvaluateCorners(MakeProblem(solution, WithoutLoss(solution.weights), model, &state));
 }

@@ -55,8 +55,9 @@ void Minimize(double function_tolerance, MarkerSolution* solution);
 // Throws DataError where a combination of parameters is undetermined.
 std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solution);
 
-// The factor of error_correlation.h, for groups of neighbouring images.
-double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization);
+// CorrelationFactor() for groups of neighbouring images.
+double ShapeCorrelationFactor(const MarkerSolution& solution,
+                              const MarkerLinearization& linearization);
 
 // The factor for the sigma of the time from the first row to the last, because cloth that moves
 // between two frames moves its markers as a rolling shutter does. 1 where that time is held.
@@ -64,7 +65,7 @@ double ShutterCorrelationFactor(const MarkerSolution& solution,
                                 const MarkerLinearization& linearization);
 
 // Residuals of the corners of another model with the weights of the solution, without loss.
-std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution);
+std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution);
 
 // Sum of the squares of all residuals in sigmas, as reduced by the loss.
 double SumOfSquares(const MarkerSolution& solution);

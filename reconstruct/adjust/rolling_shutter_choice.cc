@@ -29,7 +29,7 @@ bool IsDetermined(MarkerSolution trial) {
   const MarkerState& state = linearization->state;
   const double variance = GlobalCovariance(linearization->problem, linearization->covariance,
                                            &state.rolling_shutter_s)(0, 0);
-  const double factor = std::max(CorrelationFactor(trial, *linearization),
+  const double factor = std::max(ShapeCorrelationFactor(trial, *linearization),
                                  ShutterCorrelationFactor(trial, *linearization));
   const double sigma_s = std::sqrt(variance) * factor;
   const double sigmas = state.rolling_shutter_s / sigma_s;

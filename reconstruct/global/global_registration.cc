@@ -114,16 +114,16 @@ MapSolution GrowBestMap(const GlobalRegistration& global) {
 void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* solution) {
   constexpr double kRoughly = 4.0, kHopeless = 0.5;
   MapSolution reversed = ReversedRelief(*solution);
-  MarkFits(problem, kRoughly, &reversed);
+  MarkInliers(problem, kRoughly, &reversed);
   AdjustMap(problem, {15, 1e-3}, &reversed);
   const double explained = ExplainedObservations(problem, *solution);
   if (ExplainedObservations(problem, reversed) < kHopeless * explained) return;
-  MarkFits(problem, 1.0, &reversed);
+  MarkInliers(problem, 1.0, &reversed);
   PlaceUnsettledMarkers(problem, 1.0, 1.0, num_threads, &reversed);
   AdjustMap(problem, {15, 1e-3}, &reversed);
   if (ExplainedObservations(problem, reversed) > explained) {
     *solution = std::move(reversed);
-    MarkFits(problem, 1.0, solution);
+    MarkInliers(problem, 1.0, solution);
   }
 }
 
@@ -146,14 +146,15 @@ void RegisterAllFrames(GlobalRegistration* global) {
   LeaveOutBlurredFrames(global);
   LimitFrames(global);
   AdjustMap(problem, {10, 1e-3}, &global->solution);
-  MarkFits(problem, 1.0, &global->solution);
+  MarkInliers(problem, 1.0, &global->solution);
 }
 
-// Adjusts until a step changes the cost by less than the fraction `tolerance`, and judges the fits.
+// Adjusts until a step changes the cost by less than the fraction `tolerance`, and marks the
+// inliers.
 void AdjustFinally(double tolerance, GlobalRegistration* global) {
   AdjustMap(global->problem, {50, tolerance}, &global->solution);
   global->noise = EstimateNoise(global->problem, global->solution);
-  MarkFinalFits(global->problem, global->noise, &global->solution);
+  MarkFinalInliers(global->problem, global->noise, &global->solution);
 }
 
 // Removes outliers at the tolerance of the final noise, and adjusts. Markers that the layout
@@ -163,7 +164,7 @@ void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   DropWrongSizes(global);
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);
-  MarkFinalFits(problem, global->noise, &global->solution);
+  MarkFinalInliers(problem, global->noise, &global->solution);
   DropUnsupported(global);
   constexpr double kRough = 1e-3, kFine = 1e-6;
   AdjustFinally(kRough, global);
@@ -180,8 +181,8 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
     if (!global.solution.Pose(idx)) continue;
     int shared = 0;
     for (const int observation_idx : global.problem.Frame(idx).observation_idxs) {
-      if (!global.solution.Fits(observation_idx)) continue;
-      shared += global.NumFits(global.problem.Observation(observation_idx).marker_idx) - 1;
+      if (!global.solution.IsInlier(observation_idx)) continue;
+      shared += global.NumInliers(global.problem.Observation(observation_idx).marker_idx) - 1;
     }
     if (shared > most_shared) {
       most_shared = shared;

@@ -51,7 +51,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
       frame->outlier_reasons.push_back("left out of all images: " + dropped->second.reason);
       continue;
     }
-    if (!global.solution.Fits(idx)) {
+    if (!global.solution.IsInlier(idx)) {
       frame->outlier_ids.push_back(marker_id);
       frame->outlier_reasons.push_back(
           OutlierReason(global.problem, global.solution, global.noise, observation));

@@ -6,14 +6,14 @@
 
 namespace velamap {
 
-int GlobalRegistration::NumFits(int marker_idx) const {
-  return velamap::NumFits(problem, solution, marker_idx);
+int GlobalRegistration::NumInliers(int marker_idx) const {
+  return velamap::NumInliers(problem, solution, marker_idx);
 }
 
-int GlobalRegistration::NumFitsInFrame(int frame_idx) const {
+int GlobalRegistration::NumInliersInFrame(int frame_idx) const {
   int count = 0;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
-    count += solution.Fits(idx);
+    count += solution.IsInlier(idx);
   }
   return count;
 }
@@ -21,7 +21,7 @@ int GlobalRegistration::NumFitsInFrame(int frame_idx) const {
 double GlobalRegistration::MedianMarkerScale() const {
   std::vector<double> scales;
   for (std::size_t idx = 0; idx < problem.markers.size(); ++idx) {
-    if (NumFits(static_cast<int>(idx)) >= 2) {
+    if (NumInliers(static_cast<int>(idx)) >= 2) {
       scales.push_back(solution.shape_from_marker[idx].front().scale);
     }
   }
@@ -31,17 +31,18 @@ double GlobalRegistration::MedianMarkerScale() const {
 void GlobalRegistration::LeaveOut(int frame_idx, const std::string& reason) {
   solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].reset();
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
-    solution.fits[static_cast<std::size_t>(idx)] = 0;
+    solution.is_inlier[static_cast<std::size_t>(idx)] = 0;
   }
   reason_of_image[static_cast<std::size_t>(
       image_idx_of_frame[static_cast<std::size_t>(frame_idx)])] = reason;
 }
 
 void GlobalRegistration::Drop(int marker_idx, const std::string& reason) {
-  dropped_markers[marker_idx] = {problem.Marker(marker_idx).marker_id, NumFits(marker_idx), reason};
+  dropped_markers[marker_idx] = {problem.Marker(marker_idx).marker_id, NumInliers(marker_idx),
+                                 reason};
   solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].clear();
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    solution.fits[static_cast<std::size_t>(idx)] = 0;
+    solution.is_inlier[static_cast<std::size_t>(idx)] = 0;
   }
 }
 

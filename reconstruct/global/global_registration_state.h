@@ -32,9 +32,9 @@ struct GlobalRegistration {
     return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed),
             options.num_threads};
   }
-  int NumFits(int marker_idx) const;  // observations of the marker that fit
-  int NumFitsInFrame(int frame_idx) const;
-  double MedianMarkerScale() const;  // over the markers that fit at least two frames
+  int NumInliers(int marker_idx) const;  // observations of the marker
+  int NumInliersInFrame(int frame_idx) const;
+  double MedianMarkerScale() const;  // over the markers with two inliers or more
   // Remove a frame or a marker from the solution.
   void LeaveOut(int frame_idx, const std::string& reason);
   void Drop(int marker_idx, const std::string& reason);

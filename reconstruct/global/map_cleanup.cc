@@ -22,20 +22,20 @@ constexpr double kRivalRatio = 0.6;
 constexpr double kBlurRatio = 3.0;
 constexpr int kMinViewsWithoutBlurred = 3;
 
-// Whether the observation fits the place of marker `as_marker_idx`, with its corners renumbered by
-// `quarters` turns.
-bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
-            int quarters) {
+// Whether the observation would be an inlier of marker `as_marker_idx`, with its corners renumbered
+// by `quarters` turns.
+bool IsInlierAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
+                int quarters) {
   const MapObservation& observation = global.problem.Observation(observation_idx);
   return ErrorAs(global.problem, global.solution, observation, as_marker_idx, quarters) <=
          GrowthTolerance(observation);
 }
 
 // The same for any number of turns from `min_quarters` on.
-bool FitsRenumbered(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
-                    int min_quarters) {
+bool IsInlierRenumbered(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
+                        int min_quarters) {
   for (int quarters = min_quarters; quarters < kNumCorners; ++quarters) {
-    if (FitsAs(global, observation_idx, as_marker_idx, quarters)) return true;
+    if (IsInlierAs(global, observation_idx, as_marker_idx, quarters)) return true;
   }
   return false;
 }
@@ -48,11 +48,11 @@ bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
   for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
        ++other_idx) {
     if (other_idx == marker_idx || global.solution.Places(other_idx).empty() ||
-        count >= kRivalRatio * global.NumFits(other_idx)) {
+        count >= kRivalRatio * global.NumInliers(other_idx)) {
       continue;
     }
     if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
-          return FitsAs(global, observation_idx, other_idx, 0);
+          return IsInlierAs(global, observation_idx, other_idx, 0);
         })) {
       return true;
     }
@@ -66,11 +66,11 @@ bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
   if (global.solution.Places(marker_idx).empty()) return false;
   return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
-    return FitsRenumbered(global, observation_idx, marker_idx, 1);
+    return IsInlierRenumbered(global, observation_idx, marker_idx, 1);
   });
 }
 
-// The markers whose places explain all observations that fit this marker, whichever corner each is
+// The markers whose places explain all inliers of this marker, whichever corner each is
 // numbered from: a misread code may start at any.
 std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
   std::vector<int> rival_ids;
@@ -81,8 +81,8 @@ std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
     }
     const auto& observation_idxs = global.problem.Marker(marker_idx).observation_idxs;
     if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
-          return !global.solution.Fits(observation_idx) ||
-                 FitsRenumbered(global, observation_idx, other_idx, 0);
+          return !global.solution.IsInlier(observation_idx) ||
+                 IsInlierRenumbered(global, observation_idx, other_idx, 0);
         })) {
       rival_ids.push_back(global.problem.Marker(other_idx).marker_id);
     }
@@ -135,7 +135,7 @@ bool DropContradictions(const Layout& layout, GlobalRegistration* global) {
   std::map<int, int> marker_idx_of;
   for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
     const int marker_idx = static_cast<int>(idx);
-    if (global->solution.shape_from_marker[idx].empty() || global->NumFits(marker_idx) == 0) {
+    if (global->solution.shape_from_marker[idx].empty() || global->NumInliers(marker_idx) == 0) {
       continue;
     }
     PlacedMarker marker = SupportOf(global->problem, global->solution, global->noise, marker_idx);
@@ -165,8 +165,8 @@ void LeaveOutBlurredFrames(GlobalRegistration* global) {
     const auto& observation_idxs = global->problem.frames[idx].observation_idxs;
     const bool is_needed = std::any_of(
         observation_idxs.begin(), observation_idxs.end(), [global](int observation_idx) {
-          return global->solution.Fits(observation_idx) &&
-                 global->NumFits(global->problem.Observation(observation_idx).marker_idx) <=
+          return global->solution.IsInlier(observation_idx) &&
+                 global->NumInliers(global->problem.Observation(observation_idx).marker_idx) <=
                      kMinViewsWithoutBlurred;
         });
     if (is_needed) continue;
@@ -184,15 +184,15 @@ void LimitFrames(GlobalRegistration* global) {
     return;
   }
   std::vector<double> sigma_factor_of_frame;
-  int first_idx = -1, most_fits = -1;
+  int first_idx = -1, most_inliers = -1;
   for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
     sigma_factor_of_frame.push_back(std::max(global->noise.factor_of_frame[idx], 1e-9));
     if (!global->solution.cam_from_shape[idx]) continue;
     const bool is_named = global->image_idx_of_frame[idx] == global->central_image_idx;
-    const int num_fits = is_named ? static_cast<int>(problem.observations.size()) + 1
-                                  : global->NumFitsInFrame(static_cast<int>(idx));
-    if (num_fits > most_fits) {
-      most_fits = num_fits;
+    const int num_inliers = is_named ? static_cast<int>(problem.observations.size()) + 1
+                                     : global->NumInliersInFrame(static_cast<int>(idx));
+    if (num_inliers > most_inliers) {
+      most_inliers = num_inliers;
       first_idx = static_cast<int>(idx);
     }
   }
@@ -212,21 +212,21 @@ void DropUnsupported(GlobalRegistration* global) {
   for (bool changed = true; changed;) {
     changed = false;
     for (int idx = 0; idx < static_cast<int>(global->problem.markers.size()); ++idx) {
-      if (global->solution.Places(idx).empty() || global->NumFits(idx) >= min_num_frames) {
+      if (global->solution.Places(idx).empty() || global->NumInliers(idx) >= min_num_frames) {
         continue;
       }
       global->Drop(idx, fmt::format("seen in {} registered frames; {} are needed",
-                                    global->NumFits(idx), min_num_frames));
+                                    global->NumInliers(idx), min_num_frames));
       changed = true;
     }
     for (int idx = 0; idx < static_cast<int>(global->problem.frames.size()); ++idx) {
       if (!global->solution.Pose(idx) ||
-          global->NumFitsInFrame(idx) >= global->options.min_num_inliers) {
+          global->NumInliersInFrame(idx) >= global->options.min_num_inliers) {
         continue;
       }
       global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images; {} are "
                                         "needed",
-                                        global->NumFitsInFrame(idx),
+                                        global->NumInliersInFrame(idx),
                                         global->problem.Frame(idx).observation_idxs.size(),
                                         global->options.min_num_inliers));
       changed = true;

@@ -39,7 +39,7 @@ std::vector<CenterView> ViewsOf(const MapProblem& problem, const MapSolution& so
   const Rigid3& pose = *solution.Pose(frame_idx);
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
-    if (!solution.Fits(idx)) continue;
+    if (!solution.IsInlier(idx)) continue;
     const MapObservation& observation = problem.Observation(idx);
     const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
     const Eigen::Vector3d x = pose * solution.shape_from_marker[marker_idx].front().translation;

@@ -52,7 +52,7 @@ class AdjustableMap {
     for (std::size_t idx = 0; idx < map.observations.size(); ++idx) {
       const MapObservation& observation = map.observations[idx];
       const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
-      if (!solution.fits[idx] || !solution.Pose(observation.frame_idx) ||
+      if (!solution.is_inlier[idx] || !solution.Pose(observation.frame_idx) ||
           solution.shape_from_marker[marker_idx].empty()) {
         continue;
       }

@@ -19,8 +19,8 @@ struct MapAdjustmentOptions {
   double tolerance = 1e-4;  // relative change of the cost at convergence
 };
 
-// Adjusts the registered frames and the placed markers that at least two of them see, on the
-// observations that fit. A marker with two places takes part with the better one. The first
+// Adjusts the registered frames and the placed markers that at least two of them see, on
+// the inliers. A marker with two places takes part with the better one. The first
 // registered frame is held.
 void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
                MapSolution* solution);

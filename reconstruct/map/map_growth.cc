@@ -23,12 +23,12 @@ constexpr int kManyFrames = 16;
 // Number of views that the map has of the markers that a frame sees; at most two of each marker
 // count, because two confirm its place.
 int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
-                   const std::vector<int>& num_fits, int frame_idx) {
+                   const std::vector<int>& num_inliers, int frame_idx) {
   int num_views = 0;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     const std::size_t marker_idx = static_cast<std::size_t>(problem.Observation(idx).marker_idx);
     if (solution.shape_from_marker[marker_idx].empty()) continue;
-    num_views += num_fits[marker_idx] >= 2 ? 2 : 1;
+    num_views += num_inliers[marker_idx] >= 2 ? 2 : 1;
   }
   return num_views;
 }
@@ -42,9 +42,9 @@ struct Candidate {
 std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSolution& solution,
                                       const std::vector<int>& frame_idxs,
                                       const MapGrowthOptions& options) {
-  std::vector<int> num_fits;
+  std::vector<int> num_inliers;
   for (std::size_t idx = 0; idx < problem.markers.size(); ++idx) {
-    num_fits.push_back(NumFits(problem, solution, static_cast<int>(idx)));
+    num_inliers.push_back(NumInliers(problem, solution, static_cast<int>(idx)));
   }
   std::vector<Candidate> candidates;
   for (const int frame_idx : frame_idxs) {
@@ -52,7 +52,7 @@ std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSoluti
         NumKnown(problem, solution, frame_idx) < options.min_num_inliers) {
       continue;
     }
-    candidates.push_back({frame_idx, NumViewsOfSeen(problem, solution, num_fits, frame_idx)});
+    candidates.push_back({frame_idx, NumViewsOfSeen(problem, solution, num_inliers, frame_idx)});
   }
   std::stable_sort(
       candidates.begin(), candidates.end(),
@@ -133,12 +133,12 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
                                  solution);
     }
     if (num_joined == 0) break;
-    MarkFits(problem, tolerance_factor(), solution);
+    MarkInliers(problem, tolerance_factor(), solution);
     PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), options.num_threads,
                           solution);
     if (!options.adjust) continue;
     AdjustMap(problem, kBetweenRounds, solution);
-    MarkFits(problem, tolerance_factor(), solution);
+    MarkInliers(problem, tolerance_factor(), solution);
     PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), options.num_threads,
                           solution);
   }
@@ -146,14 +146,14 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
 
 bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marker_idx,
                double settled_ratio) {
-  int num_seen = 0, num_fits = 0;
+  int num_seen = 0, num_inliers = 0;
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
     if (!solution.Pose(problem.Observation(idx).frame_idx)) continue;
     ++num_seen;
-    num_fits += solution.Fits(idx);
+    num_inliers += solution.IsInlier(idx);
   }
-  return solution.Places(marker_idx).size() == 1 && num_fits >= 2 &&
-         num_fits >= settled_ratio * num_seen;
+  return solution.Places(marker_idx).size() == 1 && num_inliers >= 2 &&
+         num_inliers >= settled_ratio * num_seen;
 }
 
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
@@ -165,7 +165,7 @@ void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, doub
     places[idx] = PlaceMarker(problem, *solution, marker_idx, tolerance_factor).ShapeFromMarker();
   });
   solution->shape_from_marker = std::move(places);
-  MarkFits(problem, tolerance_factor, solution);
+  MarkInliers(problem, tolerance_factor, solution);
 }
 
 }  // namespace velamap

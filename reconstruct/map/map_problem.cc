@@ -100,7 +100,7 @@ MapSolution EmptySolution(const MapProblem& problem) {
   MapSolution solution;
   solution.cam_from_shape.resize(problem.frames.size());
   solution.shape_from_marker.resize(problem.markers.size());
-  solution.fits.assign(problem.observations.size(), 0);
+  solution.is_inlier.assign(problem.observations.size(), 0);
   return solution;
 }
 
@@ -146,18 +146,18 @@ double GrowthTolerance(const MapObservation& observation) {
   return std::max(2.0, 0.1 * observation.side_px);
 }
 
-void MarkFits(const MapProblem& problem, double factor, MapSolution* solution) {
+void MarkInliers(const MapProblem& problem, double factor, MapSolution* solution) {
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
     const MapObservation& observation = problem.observations[idx];
-    solution->fits[idx] =
+    solution->is_inlier[idx] =
         ReprojectionError(problem, *solution, observation) <= factor * GrowthTolerance(observation);
   }
 }
 
-int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
+int NumInliers(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
   int count = 0;
   for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    count += solution.Fits(idx);
+    count += solution.IsInlier(idx);
   }
   return count;
 }

@@ -61,7 +61,7 @@ struct MapSolution {
   // By marker_idx: none where the marker has no place yet, two where the views do not decide
   // between two places yet (the better first).
   std::vector<std::vector<Sim3>> shape_from_marker;
-  std::vector<char> fits;  // by observation_idx: the observation agrees with frame and marker
+  std::vector<char> is_inlier;  // by observation_idx: the observation agrees with frame and marker
 
   const std::optional<Rigid3>& Pose(int frame_idx) const {
     return cam_from_shape[static_cast<std::size_t>(frame_idx)];
@@ -69,8 +69,8 @@ struct MapSolution {
   const std::vector<Sim3>& Places(int marker_idx) const {
     return shape_from_marker[static_cast<std::size_t>(marker_idx)];
   }
-  bool Fits(int observation_idx) const {
-    return fits[static_cast<std::size_t>(observation_idx)] != 0;
+  bool IsInlier(int observation_idx) const {
+    return is_inlier[static_cast<std::size_t>(observation_idx)] != 0;
   }
   int NumRegistered() const;
 };
@@ -105,10 +105,10 @@ double GrowthTolerance(const MapObservation& observation);
 
 // Marks the observations of registered frames and placed markers that are within
 // `factor` * GrowthTolerance.
-void MarkFits(const MapProblem& problem, double factor, MapSolution* solution);
+void MarkInliers(const MapProblem& problem, double factor, MapSolution* solution);
 
-// The number of observations of the marker that fit.
-int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx);
+// The number of inliers among the observations of the marker.
+int NumInliers(const MapProblem& problem, const MapSolution& solution, int marker_idx);
 
 // The number of markers with a place that the frame shows.
 int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx);

@@ -58,10 +58,10 @@ void SettlePair(const MapProblem& problem, const std::set<int>& marker_idxs,
       solution->shape_from_marker[static_cast<std::size_t>(marker_idx)] =
           PlaceMarker(problem, *solution, marker_idx, tolerance_factor).ShapeFromMarker();
     }
-    MarkFits(problem, tolerance_factor, solution);
+    MarkInliers(problem, tolerance_factor, solution);
     AdjustMap(problem, {15, 1e-4}, solution);
   }
-  MarkFits(problem, 1.0, solution);
+  MarkInliers(problem, 1.0, solution);
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
     SettlePair(problem, in_both, &solution);
     keep_better(solution);
     MapSolution reversed = ReversedRelief(solution);
-    MarkFits(problem, kToleranceOfOneFrame, &reversed);
+    MarkInliers(problem, kToleranceOfOneFrame, &reversed);
     AdjustMap(problem, {15, 1e-4}, &reversed);
     SettlePair(problem, in_both, &reversed);
     keep_better(reversed);

@@ -83,7 +83,7 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
   Eigen::Vector3d with_side = Eigen::Vector3d::Zero();
   double of_side = 1 / (kScaleSigma * kScaleSigma);
   for (const int idx : marker.observation_idxs) {
-    if (!solution.Fits(idx)) continue;
+    if (!solution.IsInlier(idx)) continue;
     const MapObservation& observation = problem.Observation(idx);
     const Rigid3& pose = *solution.Pose(observation.frame_idx);
     const Eigen::Vector3d x = pose * place.translation;
@@ -111,7 +111,7 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
   std::vector<double> relative, errors_px, single_marker_px;
   std::vector<std::vector<double>> relative_of_frame(problem.frames.size());
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
-    if (!solution.fits[idx]) continue;
+    if (!solution.is_inlier[idx]) continue;
     const MapObservation& observation = problem.observations[idx];
     const double error_px = ReprojectionError(problem, solution, observation);
     relative.push_back(error_px / observation.sigma_px);
@@ -143,10 +143,10 @@ double FinalTolerance(const MapObservation& observation, const MapNoise& noise) 
   return kSigmas * factor * observation.sigma_px;
 }
 
-void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution* solution) {
+void MarkFinalInliers(const MapProblem& problem, const MapNoise& noise, MapSolution* solution) {
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
     const MapObservation& observation = problem.observations[idx];
-    solution->fits[idx] =
+    solution->is_inlier[idx] =
         ReprojectionError(problem, *solution, observation) <= FinalTolerance(observation, noise);
   }
 }
@@ -198,7 +198,7 @@ PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
   placed.sigma_m = CenterSigma(problem, solution, noise, marker_idx);
   std::vector<char> sees(problem.frames.size(), 0);
   for (const int idx : marker.observation_idxs) {
-    if (!solution.Fits(idx)) continue;
+    if (!solution.IsInlier(idx)) continue;
     sees[static_cast<std::size_t>(problem.Observation(idx).frame_idx)] = 1;
     ++placed.num_seen;
   }

@@ -25,25 +25,25 @@ struct MapNoise {
   double single_marker_sigma_px = 0.0;
 };
 
-// Estimates the noise from the observations that fit.
+// Estimates the noise from the inliers.
 MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution);
 
 // Largest error of an inlier of the finished map, px.
 double FinalTolerance(const MapObservation& observation, const MapNoise& noise);
 
-void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution* solution);
+void MarkFinalInliers(const MapProblem& problem, const MapNoise& noise, MapSolution* solution);
 
 // Whether the errors are larger than the noise of the corners explains, which indicates a wrong
 // shape.
 bool IsSuspicious(const MapNoise& noise);
 
-// The reason why an observation does not fit the place of its marker: it shows another marker, its
+// The reason why an observation is not an inlier of its marker: it shows another marker, its
 // corners are numbered from a wrong one, a single corner is off, or another cause.
 std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
                           const MapNoise& noise, const MapObservation& observation);
 
-// The evidence for a placed marker: where it is, how well that is known from the observations that
-// fit, and how many of the registered frames that should show it do. Lengths in units of the map.
+// The evidence for a placed marker: where it is, how well that is known from the inliers, and how
+// many of the registered frames that should show it do. Lengths in units of the map.
 PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
                        const MapNoise& noise, int marker_idx);
 

@@ -54,7 +54,7 @@ TEST(MarkerSides, IntersectionRestoresDisplacedPoints) {
     for (auto& [id, point] : model.points3D) {
       point.x_in_world += scale * Eigen::Vector3d(0.01, -0.02, 0.03);
     }
-    IntersectCorners(0.0, &model);
+    RetriangulateCorners(0.0, &model);
     for (const auto& [id, point] : model.points3D) {
       EXPECT_LT((point.x_in_world - truth.points3D.at(id).x_in_world).norm(), 1e-9 * scale) << id;
     }
@@ -64,7 +64,7 @@ TEST(MarkerSides, IntersectionRestoresDisplacedPoints) {
 TEST(MarkerSides, IntersectionIsTheLeastSumOfSquares) {
   Model model = ExampleModel();
   AddImageNoise(0.5, 3, &model);
-  IntersectCorners(0.0, &model);
+  RetriangulateCorners(0.0, &model);
   const double least = SummarizeReprojectionErrors(model).rms;
   EXPECT_GT(least, 0.1);
   for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +83,7 @@ TEST(MarkerSides, PointsThatOneImageSeesStay) {
   for (std::size_t i = 1; i < track.size(); ++i) RemoveObservation(&model, 11, track[i]);
   const Eigen::Vector3d before = model.points3D.at(11).x_in_world;
   model.points3D.at(12).x_in_world.x() += 0.01;
-  IntersectCorners(0.0, &model);
+  RetriangulateCorners(0.0, &model);
   EXPECT_EQ(model.points3D.at(11).x_in_world, before);
   EXPECT_NEAR(MeanSide(MeasureSides(model, ExampleLayout())[0].sides), 0.1, 1e-9);
   EXPECT_FALSE(MeasureSides(model, ExampleLayout())[0].mean_sigma.has_value());
@@ -107,10 +107,10 @@ TEST(MarkerSides, ApparentInsetIsTakenOut) {
     }
   }
   Model seen = model;
-  IntersectCorners(0.0, &seen);
+  RetriangulateCorners(0.0, &seen);
   const auto too_small = MeasureSides(seen, ExampleLayout());
   EXPECT_NEAR(MeanSide(too_small[6].sides) / 0.1, 1 - 2 * kInset_px / *too_small[6].side_px, 5e-4);
-  IntersectCorners(kInset_px, &model);
+  RetriangulateCorners(kInset_px, &model);
   for (const MeasuredMarkerSides& marker : MeasureSides(model, ExampleLayout())) {
     EXPECT_NEAR(MeanSide(marker.sides), MarkerLength(ExampleLayout(), marker.marker_id), 1e-6);
   }
@@ -123,7 +123,7 @@ TEST(MarkerSides, SigmasAreCalibrated) {
   for (int run = 0; run < kNumRuns; ++run) {
     Model model = ExampleModel();
     AddNormalNoise(0.1, &random, &model);
-    IntersectCorners(0.0, &model);
+    RetriangulateCorners(0.0, &model);
     const MeasuredMarkerSides marker = MeasureSides(model, ExampleLayout())[4];
     means.push_back(MeanSide(marker.sides) / 0.1 - 1);
     ratios.push_back(marker.HorizontalOverVertical() - 1);

@@ -31,9 +31,9 @@ struct GrownMap {
   }
   GrownMap(const GrownMap&) = delete;
 
-  // Fits and noise of the solution as it stands.
+  // Inliers and noise of the solution as it stands.
   void Update() {
-    MarkFits(global.problem, 1.0, &global.solution);
+    MarkInliers(global.problem, 1.0, &global.solution);
     global.noise = EstimateNoise(global.problem, global.solution);
   }
 
@@ -43,7 +43,7 @@ struct GrownMap {
       EXPECT_EQ(dropped.marker_id, global.problem.Marker(marker_idx).marker_id);
       EXPECT_FALSE(dropped.reason.empty());
       EXPECT_TRUE(global.solution.Places(marker_idx).empty());
-      EXPECT_EQ(global.NumFits(marker_idx), 0);
+      EXPECT_EQ(global.NumInliers(marker_idx), 0);
       ids.push_back(dropped.marker_id);
     }
     return ids;
@@ -55,7 +55,7 @@ struct GrownMap {
       const bool is_registered = global.solution.cam_from_shape[idx].has_value();
       EXPECT_EQ(global.reason_of_image[idx].empty(), is_registered) << idx;
       if (is_registered) continue;
-      EXPECT_EQ(global.NumFitsInFrame(static_cast<int>(idx)), 0);
+      EXPECT_EQ(global.NumInliersInFrame(static_cast<int>(idx)), 0);
       frame_idxs.push_back(static_cast<int>(idx));
     }
     return frame_idxs;

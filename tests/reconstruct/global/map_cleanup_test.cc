@@ -64,7 +64,7 @@ TEST(VoteOnIds, PlaceOfABetterKnownMarkerIsNoSecondPlace) {
   ReadSevenAtTwentyOne(6, &scene);
   GrownMap grown(std::move(scene));
   ASSERT_EQ(grown.global.problem.Marker(grown.map.MarkerIdx(7)).observation_idxs.size(), 7u);
-  ASSERT_EQ(grown.global.NumFits(grown.map.MarkerIdx(7)), 4);
+  ASSERT_EQ(grown.global.NumInliers(grown.map.MarkerIdx(7)), 4);
   VoteOnIds(&grown.global);
   EXPECT_THAT(grown.DroppedIds(), IsEmpty());
 }
@@ -151,7 +151,7 @@ TEST(DropContradictions, MisreadIdAtThePlaceOfAnotherMarkerGoes) {
   grown.global.solution.shape_from_marker[idx_7] = {
       {place.scale, place.rotation * quarter, place.translation}};
   grown.Update();
-  ASSERT_GE(grown.global.NumFits(static_cast<int>(idx_7)), 3);
+  ASSERT_GE(grown.global.NumInliers(static_cast<int>(idx_7)), 3);
   DropContradictions(Layout(), &grown.global);
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(7));
   EXPECT_THAT(grown.global.dropped_markers.begin()->second.reason,
@@ -163,19 +163,19 @@ TEST(DropUnsupported, GoesOnUntilAllThatIsLeftHasEnough) {
   GlobalRegistration& global = grown.global;
   grown.options.min_num_frames = 4;
   grown.options.min_num_inliers = 3;
-  // A random third of the observations fits, so that one loss brings on another.
+  // A random third of the observations are inliers, so that one loss brings on another.
   std::mt19937 generator(TestSeed());
-  for (char& fits : global.solution.fits) fits = generator() % 3 == 0;
+  for (char& is_inlier : global.solution.is_inlier) is_inlier = generator() % 3 == 0;
   DropUnsupported(&global);
   EXPECT_FALSE(grown.DroppedIds().empty());
   ASSERT_GT(global.solution.NumRegistered(), 4);
   for (std::size_t idx = 0; idx < global.problem.markers.size(); ++idx) {
     if (global.solution.shape_from_marker[idx].empty()) continue;
-    EXPECT_GE(global.NumFits(static_cast<int>(idx)), 4);
+    EXPECT_GE(global.NumInliers(static_cast<int>(idx)), 4);
   }
   for (std::size_t idx = 0; idx < global.problem.frames.size(); ++idx) {
     if (!global.solution.cam_from_shape[idx]) continue;
-    EXPECT_GE(global.NumFitsInFrame(static_cast<int>(idx)), 3);
+    EXPECT_GE(global.NumInliersInFrame(static_cast<int>(idx)), 3);
   }
   const auto dropped_ids = grown.DroppedIds();
   const auto left_out = grown.LeftOutFrames();
@@ -194,12 +194,12 @@ TEST(DropUnsupported, OneLossBringsOnAnother) {
   // Frame 2 has these two markers left; one of them no other frame sees.
   for (const int idx : global.problem.Frame(2).observation_idxs) {
     const int marker_idx = global.problem.Observation(idx).marker_idx;
-    global.solution.fits[static_cast<std::size_t>(idx)] =
+    global.solution.is_inlier[static_cast<std::size_t>(idx)] =
         marker_idx == marker_a || marker_idx == marker_b;
   }
   for (const int idx : global.problem.Marker(marker_a).observation_idxs) {
     if (global.problem.Observation(idx).frame_idx != 2) {
-      global.solution.fits[static_cast<std::size_t>(idx)] = 0;
+      global.solution.is_inlier[static_cast<std::size_t>(idx)] = 0;
     }
   }
   DropUnsupported(&global);

@@ -34,7 +34,7 @@ TEST_P(GrowExactMap, RegistersAllFramesWhereTheyAre) {
   GrowMap(map.problem, AllFrames(map.problem), {2, 0, true, TestSeed()}, &solution);
   EXPECT_EQ(solution.NumRegistered(), 24);
   EXPECT_EQ(NumPlaced(solution), static_cast<int>(map.problem.markers.size()));
-  EXPECT_EQ(std::count(solution.fits.begin(), solution.fits.end(), 1),
+  EXPECT_EQ(std::count(solution.is_inlier.begin(), solution.is_inlier.end(), 1),
             static_cast<std::ptrdiff_t>(map.problem.observations.size()));
   // The gauge of the adjustment is the first frame, whose pose has been resected: compare places
   // relative to it.
@@ -63,7 +63,7 @@ TEST(GrowMap, OrderOfFramesChangesNothing) {
   std::shuffle(frame_idxs.begin(), frame_idxs.end(), std::mt19937(TestSeed()));
   const MapSolution shuffled = grown();
   EXPECT_EQ(in_order.NumRegistered(), 20);
-  EXPECT_EQ(in_order.fits, shuffled.fits);
+  EXPECT_EQ(in_order.is_inlier, shuffled.is_inlier);
   const Rigid3 shuffled_from_other =
       Inverse(*shuffled.cam_from_shape[0]) * *in_order.cam_from_shape[0];
   EXPECT_LT(MaxCornerDistance(
@@ -158,7 +158,7 @@ TEST(IsSettled, AsksForOnePlaceAndEnoughAgreement) {
   // Half of the frames agree.
   solution = truth;
   for (std::size_t i = 0; i < seen_idxs.size(); i += 2) {
-    solution.fits[static_cast<std::size_t>(seen_idxs[i])] = 0;
+    solution.is_inlier[static_cast<std::size_t>(seen_idxs[i])] = 0;
   }
   EXPECT_TRUE(IsSettled(map.problem, solution, 11, 0.4));
   EXPECT_FALSE(IsSettled(map.problem, solution, 11, 0.6));
@@ -177,7 +177,7 @@ TEST(IsSettled, AsksForOnePlaceAndEnoughAgreement) {
     }
   }
   for (std::size_t i = 1; i < seen_idxs.size(); ++i) {
-    solution.fits[static_cast<std::size_t>(seen_idxs[i])] = 0;
+    solution.is_inlier[static_cast<std::size_t>(seen_idxs[i])] = 0;
   }
   EXPECT_FALSE(IsSettled(map.problem, solution, 11, 1.0)) << "one frame";
 }
@@ -188,7 +188,7 @@ TEST(PlaceUnsettledMarkers, PutsBackWhatStandsWrongAndLeavesTheRest) {
   MapSolution solution = truth;
   solution.shape_from_marker[4].front().translation.x() += 0.5;
   solution.shape_from_marker[17].clear();
-  MarkFits(map.problem, 1.0, &solution);
+  MarkInliers(map.problem, 1.0, &solution);
   PlaceUnsettledMarkers(map.problem, 0.6, 1.0, 1, &solution);
   for (std::size_t idx = 0; idx < solution.shape_from_marker.size(); ++idx) {
     ASSERT_EQ(solution.shape_from_marker[idx].size(), 1u) << idx;
@@ -202,7 +202,7 @@ TEST(PlaceUnsettledMarkers, PutsBackWhatStandsWrongAndLeavesTheRest) {
       EXPECT_EQ(error, 0.0);
     }
   }
-  EXPECT_EQ(std::count(solution.fits.begin(), solution.fits.end(), 1),
+  EXPECT_EQ(std::count(solution.is_inlier.begin(), solution.is_inlier.end(), 1),
             static_cast<std::ptrdiff_t>(map.problem.observations.size()));
 }
 

@@ -18,7 +18,7 @@ using testing::SizeIs;
 // Places are asked for, poses are known.
 MapSolution PosesOnly(MapSolution solution) {
   for (auto& places : solution.shape_from_marker) places.clear();
-  std::fill(solution.fits.begin(), solution.fits.end(), 0);
+  std::fill(solution.is_inlier.begin(), solution.is_inlier.end(), 0);
   return solution;
 }
 

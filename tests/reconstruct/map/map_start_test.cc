@@ -109,7 +109,7 @@ TEST(StartFromPair, OrderOfThePairChangesTheFrameOfTheMapOnly) {
       Transformed({1.0, back_from_forth.rotation, back_from_forth.translation}, forth);
   // The sigma of the common scale is 0.4 %: 10 mm at this distance.
   EXPECT_LT(MaxCornerDistance(map.problem, forth_in_back, back), 2e-3);
-  EXPECT_EQ(forth.fits, back.fits);
+  EXPECT_EQ(forth.is_inlier, back.is_inlier);
 }
 
 TEST(StartFromPair, ExplainsAsMuchAsTheTruth) {
@@ -134,7 +134,7 @@ TEST(StartFromPair, WorksWhicheverPlanarSolutionComesFirst) {
     std::reverse(observation.cam_from_marker.begin(), observation.cam_from_marker.end());
   }
   const MapSolution after = StartFromPair(map.problem, {3, 11}, TestSeed());
-  EXPECT_EQ(before.fits, after.fits);
+  EXPECT_EQ(before.is_inlier, after.is_inlier);
   EXPECT_LT(MaxCornerDistance(map.problem, before, after), 2e-3);
 }
 
@@ -153,10 +153,10 @@ TEST_P(StartWithFalseIds, LeavesThemOut) {
   const MapSolution truth = TruthInCamOf(map, 4);
   ASSERT_EQ(start.NumRegistered(), 2);
   EXPECT_LT(StepBetween(*truth.cam_from_shape[9], *start.cam_from_shape[9]).norm(), 1e-5);
-  const int num_fits = std::accumulate(start.fits.begin(), start.fits.end(), 0);
-  EXPECT_EQ(num_fits, 2 * (NumShared(map, {4, 9}) - 2));
+  const int num_inliers = std::accumulate(start.is_inlier.begin(), start.is_inlier.end(), 0);
+  EXPECT_EQ(num_inliers, 2 * (NumShared(map, {4, 9}) - 2));
   for (const int marker_id : {id_a, id_b}) {
-    EXPECT_FALSE(start.Fits(map.ObservationIdx(9, marker_id)));
+    EXPECT_FALSE(start.IsInlier(map.ObservationIdx(9, marker_id)));
   }
 }
 

@@ -70,9 +70,9 @@ TEST(EstimateNoise, UsesOnlyWhatFits) {
   AddNoise({0.4, 0.0, 0.6, 50, TestSeed()}, &scene);
   const SceneMap map(std::move(scene));
   MapSolution solution = map.TrueSolution();
-  MarkFits(map.problem, 1.0, &solution);
+  MarkInliers(map.problem, 1.0, &solution);
   EXPECT_NEAR(EstimateNoise(map.problem, solution).sigma_px, 0.4, 0.06);
-  std::fill(solution.fits.begin(), solution.fits.end(), 0);
+  std::fill(solution.is_inlier.begin(), solution.is_inlier.end(), 0);
   EXPECT_EQ(EstimateNoise(map.problem, solution).factor, 1.0);
 }
 
@@ -85,7 +85,7 @@ TEST(EstimateNoise, BlurredFrameHasALargeFactorAndAnUnregisteredOneNone) {
   MapSolution solution = map.TrueSolution();
   solution.cam_from_shape[9].reset();
   for (const int idx : map.problem.Frame(9).observation_idxs) {
-    solution.fits[static_cast<std::size_t>(idx)] = 0;
+    solution.is_inlier[static_cast<std::size_t>(idx)] = 0;
   }
   const MapNoise noise = EstimateNoise(map.problem, solution);
   EXPECT_NEAR(noise.factor_of_frame[5], std::sqrt(1 + 25.0), 1.5);
@@ -113,7 +113,7 @@ TEST(FinalTolerance, GrowsWithTheNoiseOfMapAndFrame) {
   EXPECT_GT(FinalTolerance(observation, noise), 0.1 * at_1);
 }
 
-TEST(MarkFinalFits, KeepsGoodCornersAndNothingElse) {
+TEST(MarkFinalInliers, KeepsGoodCornersAndNothingElse) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 15, false);
   AddNoise({0.3, 0.0, 0.0, 0, TestSeed()}, &scene);
   std::set<std::pair<int, int>> spoilt;  // frame_idx, marker_id
@@ -127,14 +127,14 @@ TEST(MarkFinalFits, KeepsGoodCornersAndNothingElse) {
   MapSolution solution = map.TrueSolution();
   solution.cam_from_shape[9].reset();
   solution.shape_from_marker[20].clear();
-  MarkFits(map.problem, 1.0, &solution);
-  MarkFinalFits(map.problem, EstimateNoise(map.problem, solution), &solution);
+  MarkInliers(map.problem, 1.0, &solution);
+  MarkFinalInliers(map.problem, EstimateNoise(map.problem, solution), &solution);
   for (std::size_t idx = 0; idx < map.problem.observations.size(); ++idx) {
     const MapObservation& observation = map.problem.observations[idx];
     const int marker_id = map.problem.Marker(observation.marker_idx).marker_id;
     const bool is_good = observation.frame_idx != 9 && observation.marker_idx != 20 &&
                          spoilt.count({observation.frame_idx, marker_id}) == 0;
-    EXPECT_EQ(solution.fits[idx] != 0, is_good) << observation.frame_idx << " " << marker_id;
+    EXPECT_EQ(solution.is_inlier[idx] != 0, is_good) << observation.frame_idx << " " << marker_id;
   }
 }
 
@@ -169,7 +169,7 @@ class WhyOutlierTest : public testing::Test {
     spoil(FindDetection(8, &scene.frames[6]), FindDetection(15, &scene.frames[6]));
     const SceneMap map(std::move(scene));
     MapSolution solution = map.TrueSolution();
-    MarkFits(map.problem, 1.0, &solution);
+    MarkInliers(map.problem, 1.0, &solution);
     return OutlierReason(map.problem, solution, EstimateNoise(map.problem, solution),
                          map.problem.Observation(map.ObservationIdx(6, 8)));
   }
@@ -262,7 +262,7 @@ TEST(SupportOf, SigmaIsThatOfTheCentreAndScalesWithTheMap) {
   MapSolution fewer = truth;
   const auto& observation_idxs = map.problem.Marker(marker_idx).observation_idxs;
   for (std::size_t i = 2; i < observation_idxs.size(); ++i) {
-    fewer.fits[static_cast<std::size_t>(observation_idxs[i])] = 0;
+    fewer.is_inlier[static_cast<std::size_t>(observation_idxs[i])] = 0;
   }
   EXPECT_GT(SupportOf(map.problem, fewer, noise, marker_idx).sigma_m, placed.sigma_m);
 }
@@ -281,7 +281,7 @@ double DistanceSigmaOfOneView(SceneMap map, int num_times, double* size_sigma) {
   for (int i = 1; i < num_times; ++i) {
     idxs.push_back(static_cast<int>(map.problem.observations.size()));
     map.problem.observations.push_back(observation);
-    solution.fits.push_back(1);
+    solution.is_inlier.push_back(1);
   }
   const Rigid3& pose = *solution.Pose(observation.frame_idx);
   *size_sigma = observation.sigma_px / observation.side_px;

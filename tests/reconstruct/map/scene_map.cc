@@ -47,7 +47,7 @@ MapSolution SceneMap::TrueSolution() const {
     if (scene.x_in_world.count(problem.markers[idx].marker_id) == 0) continue;
     solution.shape_from_marker[idx] = {TruePlace(static_cast<int>(idx))};
   }
-  solution.fits.assign(problem.observations.size(), 1);
+  solution.is_inlier.assign(problem.observations.size(), 1);
   return solution;
 }
 
