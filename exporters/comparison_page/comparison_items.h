@@ -1,5 +1,4 @@
-// The figures behind the first line of a comparison, and what both say alike. Private to the
-// comparison's page.
+// The figures behind the first line of a comparison, and what both say alike.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// The sections in the JSON of a comparison. Private to the comparison's page.
+// The sections in the JSON of a comparison.
 
 #pragma once
 

@@ -1,5 +1,4 @@
 // Where the fit of a whole marker's pixels starts: levels and widths that are read in the image.
-// Private to pattern_problem.h.
 
 #pragma once
 

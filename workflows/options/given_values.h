@@ -1,5 +1,4 @@
-// The values of options as they are given, on the command line or in a project file. Private to the
-// option parser.
+// The values of options as they are given, on the command line or in a project file.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Reads the project file that --project_path names. Private to the option parser.
+// Reads the project file that --project_path names.
 
 #pragma once
 
