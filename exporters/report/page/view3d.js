@@ -169,10 +169,14 @@ class View3D {
     if (this.idsAreOn !== undefined) this.placeIds();
   }
 
+  // A label that the left or right border would cut is moved inside.
   placeLabel(label, place) {
     const {clientWidth: width, clientHeight: height} = this.container;
     const x = place.clone().project(this.camera);
-    label.at = [(x.x + 1) / 2 * width, (1 - x.y) / 2 * height];
+    const half = 3.5 * label.textContent.length + 2, middle = (x.x + 1) / 2 * width;
+    const inside = Math.max(half, Math.min(middle, width - half));
+    const isCut = Math.abs(inside - middle) < 2 * half;
+    label.at = [isCut ? inside : middle, (1 - x.y) / 2 * height];
     label.style.transform = `translate(${label.at[0]}px,${label.at[1]}px) translate(-50%,-50%)`;
   }
 

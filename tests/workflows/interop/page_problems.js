@@ -22,6 +22,12 @@ function problemsOf(frame, width) {
     const box = canvas.getBoundingClientRect(), parent = canvas.parentElement.getBoundingClientRect();
     if (box.right > parent.right + 1 || box.bottom > parent.bottom + 1) problems.push(`${canvas.id || 'the view'} is cut: ${box.right} ${box.bottom} of ${parent.right} ${parent.bottom}`);
   }
+  const view = doc.querySelector('#view').getBoundingClientRect();
+  for (const label of doc.querySelectorAll('#view_axes span:not([hidden])')) {
+    const box = label.getBoundingClientRect();
+    const isCut = side => (box.left - side) * (box.right - side) < 0;
+    if (isCut(view.left) || isCut(view.right)) problems.push(`the label '${label.textContent}' is cut`);
+  }
   for (const cell of doc.querySelectorAll('th, td')) {
     const text = doc.createRange();
     text.selectNodeContents(cell);
