@@ -38,19 +38,8 @@ SurfaceFoot RefineFoot(const SplineSurface& surface, const Eigen::Vector3d& x, d
   SurfaceJet jet = EvaluateJet(surface, u, v);
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector3d rest = x - jet.x;
-    const Eigen::Vector2d gradient(jet.x_u.dot(rest), jet.x_v.dot(rest));
-    Eigen::Matrix2d hessian;
-    hessian << jet.x_u.squaredNorm(), jet.x_u.dot(jet.x_v), jet.x_u.dot(jet.x_v),
-        jet.x_v.squaredNorm();
-    const bool hold_u = IsHeld(u, gradient(0)), hold_v = IsHeld(v, gradient(1));
-    Eigen::Vector2d delta = Eigen::Vector2d::Zero();
-    if (!hold_u && !hold_v && hessian.determinant() > 1e-12 * hessian(0, 0) * hessian(1, 1)) {
-      delta = hessian.inverse() * gradient;
-    } else if (!hold_u && hessian(0, 0) > 0) {
-      delta(0) = gradient(0) / hessian(0, 0);
-    } else if (!hold_v && hessian(1, 1) > 0) {
-      delta(1) = gradient(1) / hessian(1, 1);
-    }
+    const Eigen::Vector2d delta =
+        StepToFoot(jet, x, IsHeld(u, jet.x_u.dot(rest)), IsHeld(v, jet.x_v.dot(rest)));
     double next_u = 0, next_v = 0;
     for (double damping = 1; damping > 1e-4; damping /= 2) {
       next_u = std::clamp(u + damping * delta(0), 0.0, 1.0);
@@ -75,6 +64,24 @@ SurfaceFoot RefineFoot(const SplineSurface& surface, const Eigen::Vector3d& x, d
 }
 
 }  // namespace
+
+Eigen::Vector2d StepToFoot(const SurfaceJet& jet, const Eigen::Vector3d& x_in_shape_m, bool hold_u,
+                           bool hold_v) {
+  const Eigen::Vector3d rest = x_in_shape_m - jet.x;
+  const Eigen::Vector2d gradient(jet.x_u.dot(rest), jet.x_v.dot(rest));
+  Eigen::Matrix2d hessian;
+  hessian << jet.x_u.squaredNorm(), jet.x_u.dot(jet.x_v), jet.x_u.dot(jet.x_v),
+      jet.x_v.squaredNorm();
+  Eigen::Vector2d step = Eigen::Vector2d::Zero();
+  if (!hold_u && !hold_v && hessian.determinant() > 1e-12 * hessian(0, 0) * hessian(1, 1)) {
+    step = hessian.inverse() * gradient;
+  } else if (!hold_u && hessian(0, 0) > 0) {
+    step(0) = gradient(0) / hessian(0, 0);
+  } else if (!hold_v && hessian(1, 1) > 0) {
+    step(1) = gradient(1) / hessian(1, 1);
+  }
+  return step;
+}
 
 Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double parameter, int max_order) {
   Eigen::MatrixXd row = Eigen::MatrixXd::Zero(max_order + 1, knots.size() - degree - 1);

@@ -56,6 +56,11 @@ Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v)
 
 double SurfaceArea(const SplineSurface& surface);  // m^2
 
+// The Gauss-Newton step of u and v from the point of the jet towards the foot of x: the point of
+// the surface whose normal passes through x. A parameter that is held does not move.
+Eigen::Vector2d StepToFoot(const SurfaceJet& jet, const Eigen::Vector3d& x_in_shape_m,
+                           bool hold_u = false, bool hold_v = false);
+
 struct SurfaceFoot {
   double u = 0.0, v = 0.0;
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // nearest point of the surface

@@ -31,13 +31,9 @@ std::optional<Vector> Solve(const Eigen::MatrixXd& design, const Vector& values,
   return Vector(scaled.cwiseQuotient(lengths));
 }
 
-// Robust standard deviation of residuals, which have a mean of zero.
 double ResidualSigma(const Vector& residuals, Eigen::Index num_coefficients) {
-  std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
-  for (double& size : sizes) size = std::abs(size);
-  const double n = static_cast<double>(residuals.size());
-  const double p = static_cast<double>(num_coefficients);
-  return kMadToSigma * Median(std::move(sizes)) * std::sqrt(n / (n - p));
+  return RobustSigmaAboutZero({residuals.data(), residuals.data() + residuals.size()},
+                              static_cast<double>(num_coefficients));
 }
 
 Vector TotalSigmas(const Vector& sigmas, double excess_sigma) {

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 namespace velamap {
 namespace {
 
-// Each fit moves the feet only a little, so a few Gauss-Newton steps are enough.
+// Each fit moves the feet only a little, so a few steps are enough.
 void MoveToFoot(const SplineSurface& surface, PlacedPoint* point) {
   constexpr int kNumSteps = 3;
   for (int step = 0; step < kNumSteps; ++step) {
-    const SurfaceJet jet = EvaluateJet(surface, point->u, point->v);
-    Eigen::Matrix<double, 3, 2> tangents;
-    tangents << jet.x_u, jet.x_v;
-    const Eigen::Matrix2d normal = tangents.transpose() * tangents;
     const Eigen::Vector2d move =
-        normal.ldlt().solve(tangents.transpose() * (point->x_in_shape_m - jet.x));
+        StepToFoot(EvaluateJet(surface, point->u, point->v), point->x_in_shape_m);
     point->u += move[0];
     point->v += move[1];
   }

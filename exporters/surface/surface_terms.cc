@@ -21,14 +21,6 @@ double NominalSigmaOf(const SortedInput& sorted) {
   return NominalSigma(places_m);
 }
 
-// The noise of the observations, from the residuals of a fit with so many parameters, which made
-// the residuals smaller than the noise.
-double NoiseOf(std::vector<double> residuals, double num_parameters) {
-  const auto num = static_cast<double>(residuals.size());
-  for (double& residual : residuals) residual = std::abs(residual);
-  return kMadToSigma * Median(std::move(residuals)) * std::sqrt(num / (num - num_parameters));
-}
-
 }  // namespace
 
 MarkerNoise DescribeNoise(const SortedInput& sorted) {
@@ -109,9 +101,9 @@ std::map<int, double> TiltSigmas(const std::vector<SurfaceObservation>& observat
   const auto n = static_cast<Eigen::Index>(observations.size());
   const Eigen::VectorXd places = smooth.residuals.head(n);
   const double tilt_noise =
-      NoiseOf(residuals, smooth.leverages.tail(smooth.leverages.size() - n).sum());
+      RobustSigmaAboutZero(residuals, smooth.leverages.tail(smooth.leverages.size() - n).sum());
   const double place_noise =
-      NoiseOf({places.begin(), places.end()}, smooth.leverages.head(n).sum());
+      RobustSigmaAboutZero({places.begin(), places.end()}, smooth.leverages.head(n).sum());
   // Not below 1, because a surface that is too stiff for exact places does not show that tilts are
   // more accurate.
   const double factor = std::max(tilt_noise / place_noise, 1.0);

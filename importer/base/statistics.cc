@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "importer/base/error.h"
 
@@ -46,6 +48,13 @@ double RobustSigma(const std::vector<double>& values) {
   deviations.reserve(values.size());
   for (const double value : values) deviations.push_back(std::abs(value - median));
   return kMadToSigma * Median(std::move(deviations));
+}
+
+double RobustSigmaAboutZero(std::vector<double> residuals, double num_parameters) {
+  const double num = static_cast<double>(residuals.size());
+  if (!(num > num_parameters)) return std::numeric_limits<double>::infinity();
+  for (double& residual : residuals) residual = std::abs(residual);
+  return kMadToSigma * Median(std::move(residuals)) * std::sqrt(num / (num - num_parameters));
 }
 
 double Rms(const std::vector<double>& values) {

@@ -41,6 +41,10 @@ constexpr double kMadToSigma = 1.4826;
 // even if nearly half of the values are outliers. `values` must not be empty.
 double RobustSigma(const std::vector<double>& values);
 
+// The same about zero instead of the median, for the residuals of a fit with that many parameters,
+// which made them smaller than the noise. Infinite for no more values than parameters.
+double RobustSigmaAboutZero(std::vector<double> residuals, double num_parameters = 0.0);
+
 // The root of the mean square; 0 for no values.
 double Rms(const std::vector<double>& values);
 

@@ -11,8 +11,9 @@
 #include "importer/base/error.h"
 #include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
-#include "importer/camera/camera_projection.h"
+#include "importer/camera/camera_jacobian.h"
 #include "importer/geometry/least_squares.h"
+#include "importer/geometry/pose_step.h"
 #include "importer/geometry/quad.h"
 #include "reconstruct/geometry/marker_pose.h"
 
@@ -52,27 +53,17 @@ std::optional<CornerVector> Project(const Camera& camera, const Rigid3& cam_from
   return projected;
 }
 
-// Central differences by a rotation about the marker's axes and by its position.
-std::optional<Eigen::Matrix<double, 2 * kNumCorners, 6>> ByPose(const Camera& camera,
-                                                                const Rigid3& pose) {
-  constexpr double kStep = 1e-5;
+// Derivatives of the projected corners with respect to the pose, whose steps are as in PlusPose().
+Eigen::Matrix<double, 2 * kNumCorners, 6> ByPose(const Camera& camera, const Rigid3& pose) {
+  const auto corners = CornersInMarker(1.0);
   Eigen::Matrix<double, 2 * kNumCorners, 6> jacobian;
-  for (int i = 0; i < 6; ++i) {
-    std::array<CornerVector, 2> moved;
-    for (const int side : {0, 1}) {
-      const double step = side == 0 ? -kStep : kStep;
-      Rigid3 near = pose;
-      if (i < 3) {
-        near.rotation =
-            pose.rotation * Eigen::Quaterniond(Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(i)));
-      } else {
-        near.translation[i - 3] += step;
-      }
-      const auto projected = Project(camera, near);
-      if (!projected) return std::nullopt;
-      moved[static_cast<std::size_t>(side)] = *projected;
-    }
-    jacobian.col(i) = (moved[1] - moved[0]) / (2 * kStep);
+  for (int i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector3d rotated = pose.rotation * corners[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d x = rotated + pose.translation;
+    const RayFunction image = ImageFromRayWithJacobian(camera.model, camera.params.data(),
+                                                       Eigen::Vector2d(x.hnormalized()));
+    const Eigen::Matrix<double, 2, 3> by_point = image.by_ray * RayByPoint(x);
+    jacobian.middleRows<2>(2 * i) << ByRotation(by_point, rotated), by_point;
   }
   return jacobian;
 }
@@ -92,9 +83,8 @@ std::optional<ViewErrors> ErrorsOf(const Camera& camera, const SquareView& view,
     result.by_log_focal.segment<2>(2 * i) = (x_px - center) / view.sigma_px;
   }
   if (!with_change) return result;
-  const auto by_pose = ByPose(camera, poses.front().cam_from_marker);
-  if (!by_pose) return std::nullopt;
-  const Eigen::Matrix<double, 2 * kNumCorners, 6> scaled = *by_pose / view.sigma_px;
+  const Eigen::Matrix<double, 2 * kNumCorners, 6> scaled =
+      ByPose(camera, poses.front().cam_from_marker) / view.sigma_px;
   result.by_log_focal -= scaled * scaled.colPivHouseholderQr().solve(result.by_log_focal);
   return result;
 }

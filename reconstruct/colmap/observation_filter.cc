@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -23,14 +22,6 @@ void AddResidual(const ObservationError& error, AxisResiduals* residuals) {
   if (!std::isfinite(error.error_px)) return;
   residuals->push_back(error.residual_in_image_px.x());
   residuals->push_back(error.residual_in_image_px.y());
-}
-
-// Robust sigma about zero instead of the median: a shift of all residuals counts as an error.
-// Infinite for no residuals.
-double RobustSigmaAboutZero(AxisResiduals residuals) {
-  if (residuals.empty()) return std::numeric_limits<double>::infinity();
-  for (double& residual : residuals) residual = std::abs(residual);
-  return kMadToSigma * Median(std::move(residuals));
 }
 
 double OutlierThreshold(const BundleAdjustmentOptions& options, double sigma_px) {
