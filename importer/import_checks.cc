@@ -209,9 +209,9 @@ void CheckPixelAspect(const MarkerImporterOptions& options) {
   const double pixel_aspect = PixelAspect(options.image_path);
   if (std::abs(pixel_aspect - 1) < kTolerance) return;
   throw InputError(fmt::format(
-      "{}: its pixels are {:.3f} times as wide as high, and without a calibration they are taken "
-      "to be square; make them square with ffmpeg -i VIDEO -vf scale=iw*sar:ih,setsar=1 -crf 12 "
-      "square.mp4, or give --camera_path with a calibration from such pictures",
+      "{}: its pixels are {:.3f} times as wide as high, and without a calibration from such "
+      "pictures they are taken to be square; make them square with ffmpeg -i VIDEO -vf "
+      "scale=iw*sar:ih,setsar=1 -crf 12 square.mp4",
       options.image_path, pixel_aspect));
 }
 

@@ -116,9 +116,7 @@ void ReportRefinement(const FreeIntrinsics& free, double calibration_sigma,
     if (IsWithin(MakeIntrinsicsPrior(calibration, free, calibration_sigma), camera)) {
       LogInfo(text);
     } else {
-      solution->warnings.push_back(
-          fmt::format("{}; calibrate the camera again, or keep the given calibration by {} 0", text,
-                      OptionName(&MarkerAdjustmentOptions::refine_calibration)));
+      solution->warnings.push_back(text + "; calibrate the camera again");
     }
   }
 }

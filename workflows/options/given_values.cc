@@ -52,7 +52,7 @@ void AddGiven(const Option& option, const std::string& name, const GivenValue& g
   }
   const std::vector<std::string>& old_names = option.old_names;
   if (std::find(old_names.begin(), old_names.end(), name) != old_names.end()) {
-    WarnAboutOldName(given.given_as, option.name);
+    WarnAboutOldName(given.given_as, "--" + option.name);
   }
 }
 

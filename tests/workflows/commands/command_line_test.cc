@@ -132,7 +132,7 @@ TEST(CommandLineTest, OldNamesAreUnderstoodWithAWarning) {
   const ProgramRun prior = RunVelamap({"marker_importer", "--image_path", "/n", "--camera_path",
                                        "/n", "--database_path", "/out", "--map_path", "/n"});
   EXPECT_EQ(prior.exit_code, 2);
-  EXPECT_THAT(prior.err, HasSubstr("--map_path: an old name; write prior_shape_path"));
+  EXPECT_THAT(prior.err, HasSubstr("--map_path: an old name; write --prior_shape_path"));
   const ProgramRun backend = RunVelamap(
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "ceres"});
   EXPECT_EQ(backend.exit_code, 2);

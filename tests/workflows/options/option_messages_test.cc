@@ -24,7 +24,12 @@ using Names = std::set<std::string>;
 
 // The commands that run the code of a folder or file; of several entries the longest counts.
 const std::map<std::string, Names> kCommandsOfPath = {
-    {"importer/", {"automatic_reconstructor", "marker_importer"}},
+    {"importer/",
+     {"automatic_reconstructor", "marker_importer", "clip_checker", "camera_calibrator"}},
+    // What is said of a calibration, an earlier database and a prior shape: only some take these.
+    {"importer/import_checks", {"automatic_reconstructor", "marker_importer"}},
+    {"importer/marker_importer.cc", {"automatic_reconstructor", "marker_importer"}},
+    {"importer/camera/", {"automatic_reconstructor", "marker_importer", "clip_checker"}},
     {"importer/database_merger.cc", {"database_merger"}},
     {"importer/base/",
      {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
@@ -39,7 +44,9 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"importer/database/",
      {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
       "central_frame_sweeper"}},
-    {"reconstruct/", {"automatic_reconstructor", "frame_registrator", "central_frame_sweeper"}},
+    {"reconstruct/",
+     {"automatic_reconstructor", "frame_registrator", "central_frame_sweeper", "clip_checker",
+      "camera_calibrator"}},
     // The sweep names central frames that can be found, and is the thesis's.
     {"reconstruct/registration/frame_order.cc", {"automatic_reconstructor", "frame_registrator"}},
     {"reconstruct/registration/registration_options.cc",
@@ -55,7 +62,8 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"reconstruct/problem/",
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"reconstruct/adjust/",
-     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
+     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper", "clip_checker",
+      "camera_calibrator"}},
     {"exporters/", {"automatic_reconstructor", "shape_exporter"}},
     {"exporters/calibration/", {"camera_calibrator"}},
     {"exporters/compare/", {"shape_comparer"}},
