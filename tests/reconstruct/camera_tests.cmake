@@ -1,6 +1,9 @@
 # Cameras that are found from the pictures.
 velamap_test(NAME reconstruct_camera_test LABEL unit
   SOURCES
+    calibration/board_flaws_test.cc
+    calibration/board_views_test.cc
+    calibration/residual_pattern_test.cc
     camera_calibration_test.cc
     camera_search_test.cc
     adjust/camera_adjustment_test.cc

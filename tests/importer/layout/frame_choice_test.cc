@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-std::string WriteLayout(const TempDir& dir, const std::string& frame) {
+std::string WriteLayoutWithFrame(const TempDir& dir, const std::string& frame) {
   const std::string path = dir / "layout.yml";
   std::ofstream(path) << R"(dictionary: DICT_4X4_100
 marker_length: 0.1
@@ -60,11 +60,12 @@ TEST(FrameKeyword, IsWhatIsParsed) {
 
 TEST(ReadLayout, ReadsTheFrame) {
   const TempDir dir;
-  EXPECT_FALSE(ReadLayout(WriteLayout(dir, "")).frame);
-  EXPECT_EQ(ReadLayout(WriteLayout(dir, "frame: lines")).frame->kind, FrameKind::kLines);
-  EXPECT_EQ(ReadLayout(WriteLayout(dir, "frame: reference_part")).frame->kind,
+  EXPECT_FALSE(ReadLayout(WriteLayoutWithFrame(dir, "")).frame);
+  EXPECT_EQ(ReadLayout(WriteLayoutWithFrame(dir, "frame: lines")).frame->kind, FrameKind::kLines);
+  EXPECT_EQ(ReadLayout(WriteLayoutWithFrame(dir, "frame: reference_part")).frame->kind,
             FrameKind::kReferencePart);
-  const Layout layout = ReadLayout(WriteLayout(dir, "frame: {origin: 1, axis: 3, plane: 20}"));
+  const Layout layout =
+      ReadLayout(WriteLayoutWithFrame(dir, "frame: {origin: 1, axis: 3, plane: 20}"));
   EXPECT_EQ(layout.frame->kind, FrameKind::kMarkers);
   EXPECT_EQ(layout.frame->plane_id, 20);
 }
@@ -72,7 +73,7 @@ TEST(ReadLayout, ReadsTheFrame) {
 TEST(ReadLayout, RefusesBadFrames) {
   const TempDir dir;
   const auto expect = [&](const std::string& frame, const std::string& problem) {
-    ExpectThrows<InputError>([&] { ReadLayout(WriteLayout(dir, frame)); },
+    ExpectThrows<InputError>([&] { ReadLayout(WriteLayoutWithFrame(dir, frame)); },
                              {"layout.yml:9: frame", problem});
   };
   expect("frame: markers", "'markers' is not a frame");

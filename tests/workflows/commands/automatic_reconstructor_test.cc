@@ -80,7 +80,7 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   // COLMAP keeps the central image at the first place.
   const std::string central = ReadModel((workspace() / "sparse/seed").string()).images.at(0).name;
   EXPECT_EQ(names.at(0), central);
-  EXPECT_THAT(run.err, HasSubstr("central image " + central + ": "));
+  EXPECT_THAT(run.err, HasSubstr("central frame " + central + ": "));
   std::sort(names.begin(), names.end());
   EXPECT_EQ(ListFolder(workspace() / "images"), names);
 }
@@ -166,6 +166,7 @@ TEST_F(AutomaticReconstructorTest, OtherDetectionOptionsNeedANewDatabase) {
   const ProgramRun run = Run({"--ArucoDetection.corner_refinement", "none"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(NumErrorLines(run.err), 1);
+  EXPECT_THAT(run.err, HasSubstr("--import_anew 1"));
   EXPECT_EQ(ReadFileBytes(workspace() / "shape/shape.csv"), before);
 }
 

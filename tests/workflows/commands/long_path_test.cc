@@ -35,6 +35,24 @@ class LongPathTest : public StagesTest, public ::testing::WithParamInterface<std
       options[command == "marker_importer" ? "database_path" : "workspace_path"] = out;
       return options;
     }
+    if (command == "clip_checker" || command == "camera_calibrator") {
+      WriteClip();
+      Options options = {{"image_path", path("clip.avi")}, {"dictionary", "DICT_4X4_50"}};
+      if (command == "camera_calibrator") options["output_path"] = out;
+      return options;
+    }
+    if (command == "marker_generator") {
+      return {{"dictionary", "DICT_4X4_50"}, {"marker_length", "0.1"}, {"output_path", out}};
+    }
+    if (command == "shoot_planner") {
+      return {{"shape_path", path("shape")}, {"camera_path", WriteCamera()}, {"output_path", out}};
+    }
+    if (command == "database_merger") {
+      return {{"database_paths", path("database.db") + "," + path("database.db")},
+              {"dictionary", "DICT_4X4_50"},
+              {"marker_length", "0.1"},
+              {"output_path", out}};
+    }
     if (command == "shape_analyzer") {
       return {{"shape_path", path("shape")}, {"input_path", path("model")}};
     }
@@ -58,8 +76,13 @@ class LongPathTest : public StagesTest, public ::testing::WithParamInterface<std
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
 
-  void WriteClip() {
+  std::string WriteCamera() {
     WriteTextFile(dir_ / "cameras.txt", kCamera);
+    return path("cameras.txt");
+  }
+
+  void WriteClip() {
+    WriteCamera();
     const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
     cv::VideoWriter writer(path("clip.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
                            cv::Size(320, 200));
@@ -99,7 +122,7 @@ TEST_P(LongPathTest, IsAnInputError) {
     }
     // COLMAP's adjustment knows no markers.
     if (GetParam() == "bundle_adjuster" && is_of_colmap) options.erase("marker_length");
-    // A layout names dictionary and length itself.
+    // A layout names dictionary and length itself. A plan takes one in place of a shape.
     if (name == "layout_path") {
       options.erase("dictionary");
       options.erase("marker_length");
@@ -117,14 +140,13 @@ TEST_P(LongPathTest, IsAnInputError) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, LongPathTest,
-                         ::testing::Values("automatic_reconstructor", "marker_importer",
-                                           "frame_registrator", "bundle_adjuster",
-                                           "central_frame_sweeper", "shape_exporter",
-                                           "shape_analyzer", "shape_comparer"),
-                         [](const ::testing::TestParamInfo<std::string>& test) {
-                           return test.param;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Commands, LongPathTest,
+    ::testing::Values("automatic_reconstructor", "marker_importer", "frame_registrator",
+                      "bundle_adjuster", "central_frame_sweeper", "shape_exporter",
+                      "shape_analyzer", "shape_comparer", "clip_checker", "camera_calibrator",
+                      "marker_generator", "shoot_planner", "database_merger"),
+    [](const ::testing::TestParamInfo<std::string>& test) { return test.param; });
 
 }  // namespace
 }  // namespace velamap
