@@ -6,8 +6,8 @@
 #   adjustment  registration and adjustment; colmap bundle_adjuster on a seed in time order
 #   main        automatic_reconstructor around a named central frame; decoding of those frames
 #   memory      peak memory of the import of a short and a long clip
-#   growth      import with twice the frames, and with larger ones
-#   markers     detection in one frame, registration and adjustment with 20 to 500 markers
+#   growth      import with twice the frames, and with larger ones; always at 1280 px, too
+#   markers     detection in one frame with 20 to 500 markers
 #   tracking    import with exhaustive search, with tracked search, and with a prior shape: what each of
 #               them finds, and the time of the search
 #   sweep       central_frame_sweeper; as many single runs
@@ -230,23 +230,14 @@ compare_growth() {
 }
 
 compare_markers() {
-  local filter
-  echo "num_markers,detection_ms,registration_and_adjustment_ms"
-  for filter in DetectManyMarkers RegistrationAndAdjustment/41/; do  # one format of CSV a run
-    "$velamap_benchmark" --benchmark_format=csv --benchmark_filter="$filter" 2>/dev/null
-  done |
+  echo "num_markers,detection_ms"
+  "$velamap_benchmark" --benchmark_format=csv --benchmark_filter=DetectManyMarkers 2>/dev/null |
     awk -F, '
       /^name/ { gsub(/"/, ""); for (i = 1; i <= NF; i++) column[$i] = i; next }
       /^"?BM_/ {
         gsub(/"/, "", $1)
         split($1, part, "/")
-        if ($1 ~ /Detect/) { n = part[2] * part[3]; detect[n] = $column["cpu_time"] }
-        else { n = part[3] * part[4]; adjust[n] = 1000 * $column["cpu_s"] }
-        seen[n] = 1
-      }
-      END {
-        for (n in seen) printf "%d,%s,%s\n", n, n in detect ? sprintf("%.0f", detect[n]) : "",
-          n in adjust ? sprintf("%.0f", adjust[n]) : "" | "sort -t, -k1n"
+        printf "%d,%.0f\n", part[2] * part[3], $column["cpu_time"] | "sort -t, -k1n"
       }'
 }
 
