@@ -123,7 +123,7 @@ class Judge {
     if (pattern_px > kMaxPatternPx && pattern_px > kMaxPatternShare * calibration_.error_px.rms) {
       reasons_.Check(
           fmt::format("{:.2f} px of the residuals have a pattern over the picture that no camera "
-                      "model explains: was the picture stabilised or corrected by the camera? "
+                      "model explains: was the picture stabilized or corrected by the camera? "
                       "Switch that off",
                       pattern_px));
     }

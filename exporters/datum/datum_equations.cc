@@ -17,8 +17,8 @@ int NumCoordinates(const DatumPoints& points, const PointSet& set) {
   return count;
 }
 
-DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
-                         const Rigid3& known_from_centred) {
+DatumEquations LinearizeDatum(const DatumPoints& points, const PointSet& set,
+                              const Rigid3& known_from_centred) {
   const auto max_rows = static_cast<Eigen::Index>(3 * set.size());
   DatumEquations equations{{0},
                            Eigen::VectorXd(max_rows),

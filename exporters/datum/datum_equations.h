@@ -52,8 +52,8 @@ struct DatumEquations {
   Eigen::VectorXd by_scale_m;
 };
 
-DatumEquations Linearize(const DatumPoints& points, const PointSet& set,
-                         const Rigid3& known_from_centred);
+DatumEquations LinearizeDatum(const DatumPoints& points, const PointSet& set,
+                              const Rigid3& known_from_centred);
 
 // The covariance of the residuals, m^2, due to the errors of the known coordinates and of the
 // shape.

@@ -108,7 +108,7 @@ std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& 
                                      const Rigid3& known_from_centred) {
   PointSet all(points.points.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const DatumEquations equations = Linearize(points, all, known_from_centred);
+  const DatumEquations equations = LinearizeDatum(points, all, known_from_centred);
   const Eigen::MatrixXd covariance = ResidualCovariance(points, all, known_from_centred.rotation);
   std::vector<Eigen::Index> rows;
   for (const std::size_t i : set) {
@@ -116,7 +116,7 @@ std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& 
       rows.push_back(row);
     }
   }
-  const DatumEquations of_set = Linearize(points, set, known_from_centred);
+  const DatumEquations of_set = LinearizeDatum(points, set, known_from_centred);
   const SetSystem system = MakeSystem(points, of_set, covariance(rows, rows));
   const std::vector<double> sigmas_of_set = SigmasOfSet(system, of_set.begins);
   // The derivative of the adjusted pose with respect to the residuals of the set, with the opposite
@@ -146,7 +146,7 @@ std::vector<double> BaardaStatistics(const DatumPoints& points, const PointSet& 
 
 std::string UndeterminedMotions(const DatumPoints& points, const PointSet& set,
                                 const Rigid3& known_from_centred) {
-  const SetSystem system = MakeSystem(points, Linearize(points, set, known_from_centred),
+  const SetSystem system = MakeSystem(points, LinearizeDatum(points, set, known_from_centred),
                                       ResidualCovariance(points, set, known_from_centred.rotation));
   const SymmetricEigen motions = DecomposeSymmetric(system.pose_covariance);
   const double limit_m2 = std::pow(kMaxOpen * points.radius_m, 2);
@@ -173,7 +173,7 @@ std::string UndeterminedMotions(const DatumPoints& points, const PointSet& set,
 std::optional<UncertainValue> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
                                                   const Rigid3& known_from_centred) {
   constexpr double kMaxSigma = 0.5;
-  const DatumEquations equations = Linearize(points, set, known_from_centred);
+  const DatumEquations equations = LinearizeDatum(points, set, known_from_centred);
   const SetSystem system =
       MakeSystem(points, equations, ResidualCovariance(points, set, known_from_centred.rotation));
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;

@@ -48,7 +48,7 @@ struct DatumProblem : LeastSquaresProblem<6> {
   void Evaluate(const Rigid3& known_from_centred, bool, Equations* equations) const {
     constexpr double kRegularization = 1e-12;
     *equations = {};
-    const DatumEquations linear = Linearize(points, set, known_from_centred);
+    const DatumEquations linear = LinearizeDatum(points, set, known_from_centred);
     const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
     const Eigen::VectorXd residuals = whitener * linear.residuals_m;
     equations->Add(jacobian, residuals);

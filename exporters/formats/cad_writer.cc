@@ -172,7 +172,7 @@ void TransferExtras(const CadExtras& extras, STEPControl_Writer* writer) {
   VELAMAP_CHECK(false);
 }
 
-void DescribeStep(const std::string& name, const Handle(StepData_StepModel) & model) {
+void DescribeStepFile(const std::string& name, const Handle(StepData_StepModel) & model) {
   APIHeaderSection_MakeHeader header(model);
   header.SetName(Text(name));
   header.SetTimeStamp(Text(fmt::format("{:%Y-%m-%dT%H:%M:%S}", OutputDate())));
@@ -233,7 +233,7 @@ void WriteStep(const SplineSurface& surface, const std::string& name, std::ostre
   STEPControl_Writer writer;
   VELAMAP_CHECK(writer.Transfer(MakeFace(surface), STEPControl_AsIs) == IFSelect_RetDone);
   TransferExtras(extras, &writer);
-  DescribeStep(Ascii(name), writer.Model());
+  DescribeStepFile(Ascii(name), writer.Model());
   StepData_StepWriter text(writer.Model());
   text.SendModel(Handle(StepData_Protocol)::DownCast(writer.WS()->Protocol()));
   // The owner of the stream reports its failure.

@@ -5,7 +5,7 @@
 //   ExternalToolError  exit 3   COLMAP is absent, has failed, or its result is implausible
 //   std::logic_error   exit 4   a broken invariant of velamap (VELAMAP_CHECK)
 //
-// They are thrown where the fault is found and caught in one place, workflows/velamap.cc.
+// They are thrown where the fault is found and caught in one place, workflows/commands/program.cc.
 
 #pragma once
 

@@ -2,7 +2,7 @@
 //
 // The schema is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
 // COLMAP from 3.5 to 4.x opens. More tables (README.md of this folder) hold what COLMAP has no
-// place for; COLMAP ignores and keeps them. The schema of an existing file is recognised by its
+// place for; COLMAP ignores and keeps them. The schema of an existing file is recognized by its
 // columns.
 
 #pragma once

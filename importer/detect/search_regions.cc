@@ -24,7 +24,7 @@ cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
   return PixelsAround(box, size, margin_px + kSearchReachPx);
 }
 
-double AreaOf(const std::vector<cv::Rect>& regions) {
+double TotalAreaPx(const std::vector<cv::Rect>& regions) {
   double area = 0.0;
   for (const cv::Rect& region : regions) area += region.area();
   return area;

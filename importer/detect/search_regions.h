@@ -20,7 +20,7 @@ cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px);
 // The region to search for a marker whose place is known to `margin_px`.
 cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
 
-double AreaOf(const std::vector<cv::Rect>& regions);  // px^2; overlaps count more than once
+double TotalAreaPx(const std::vector<cv::Rect>& regions);  // px^2; overlaps count more than once
 
 // The fixed cost of searching a region, in pixels.
 constexpr int kCallCostPx = 4000;

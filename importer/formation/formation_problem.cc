@@ -19,7 +19,8 @@ using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 // priors.
 constexpr double kPixelsAlike = 10.0;
 
-// The steps for derivatives by differences.
+// The steps of the differences that stand for derivatives: the samples are fitted again after each
+// step, and no automatic derivative passes through these fits.
 const FormationVector kStep =
     (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02, 0.01, 0.1).finished();
 

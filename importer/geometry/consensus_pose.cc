@@ -52,7 +52,7 @@ Rigid3 CamFromSpace(const Rigid3& cam_from_unit, const UnitFrame& frame) {
           cam_from_unit.translation / frame.scale - cam_from_unit.rotation * frame.center_in_space};
 }
 
-struct PoseHypothesis {
+struct ConsensusHypothesis {
   Rigid3 cam_from_unit;
   double cost = 0.0;  // truncated sum of squared errors, in sides
   std::vector<std::size_t> agreeing_idxs;
@@ -62,7 +62,7 @@ struct PoseHypothesis {
 class MarkerConsensus {
  public:
   using Model = Rigid3;
-  using Hypothesis = PoseHypothesis;
+  using Hypothesis = ConsensusHypothesis;
   static constexpr int kSampleSize = 3;
 
   explicit MarkerConsensus(const std::vector<MarkerRays>& markers) : markers_(markers) {}
@@ -80,8 +80,8 @@ class MarkerConsensus {
     return SolveP3P(x_in_unit, rays);
   }
 
-  PoseHypothesis Score(const Rigid3& cam_from_unit) const {
-    PoseHypothesis hypothesis{cam_from_unit, 0.0, {}};
+  ConsensusHypothesis Score(const Rigid3& cam_from_unit) const {
+    ConsensusHypothesis hypothesis{cam_from_unit, 0.0, {}};
     const Eigen::Matrix3d rotation = cam_from_unit.rotation.toRotationMatrix();
     for (std::size_t i = 0; i < markers_.size(); ++i) {
       const double error = ErrorInSides(markers_[i], rotation, cam_from_unit.translation);
@@ -91,12 +91,12 @@ class MarkerConsensus {
     return hypothesis;
   }
 
-  double InlierRatio(const PoseHypothesis& hypothesis) const {
+  double InlierRatio(const ConsensusHypothesis& hypothesis) const {
     return static_cast<double>(hypothesis.agreeing_idxs.size()) /
            static_cast<double>(markers_.size());
   }
 
-  PoseHypothesis Refine(const PoseHypothesis& hypothesis) const {
+  ConsensusHypothesis Refine(const ConsensusHypothesis& hypothesis) const {
     if (!IsSupported(hypothesis)) return hypothesis;
     std::vector<RayObservation> observations;
     for (const std::size_t i : hypothesis.agreeing_idxs) {
@@ -107,12 +107,12 @@ class MarkerConsensus {
     return Score(RefinePose(observations, hypothesis.cam_from_unit));
   }
 
-  bool HasSameInliers(const PoseHypothesis& a, const PoseHypothesis& b) const {
+  bool HasSameInliers(const ConsensusHypothesis& a, const ConsensusHypothesis& b) const {
     return a.agreeing_idxs == b.agreeing_idxs;
   }
 
   // At least four markers, and half of all.
-  bool IsSupported(const PoseHypothesis& hypothesis) const {
+  bool IsSupported(const ConsensusHypothesis& hypothesis) const {
     const std::size_t num_agreeing = hypothesis.agreeing_idxs.size();
     return num_agreeing >= kMinConsensus && 2 * num_agreeing >= markers_.size();
   }
@@ -140,9 +140,9 @@ std::optional<ConsensusPose> FindConsensusPose(std::vector<MarkerRays> markers) 
   const std::optional<UnitFrame> frame = CenterAndScale(&markers);
   if (!frame) return std::nullopt;
   const MarkerConsensus consensus(markers);
-  std::vector<PoseHypothesis> hypotheses = Ransac({}, consensus);
+  std::vector<ConsensusHypothesis> hypotheses = Ransac({}, consensus);
   if (hypotheses.empty()) return std::nullopt;
-  const PoseHypothesis best =
+  const ConsensusHypothesis best =
       RefineHypothesis(consensus, kNumRounds, std::move(hypotheses.front()));
   if (!consensus.IsSupported(best)) return std::nullopt;
   return ConsensusPose{CamFromSpace(best.cam_from_unit, *frame), best.agreeing_idxs};

@@ -13,18 +13,18 @@ namespace velamap {
 // A code, and the same code rotated clockwise by one, two and three quarter turns.
 using Rotations = std::array<MarkerCode, 4>;
 
-inline int Distance(MarkerCode a, MarkerCode b) { return __builtin_popcountll(a ^ b); }
+inline int HammingDistance(MarkerCode a, MarkerCode b) { return __builtin_popcountll(a ^ b); }
 
 // The smallest distance over all relative rotations.
-inline int Distance(const Rotations& a, const Rotations& b) {
-  return std::min(std::min(Distance(a[0], b[0]), Distance(a[1], b[0])),
-                  std::min(Distance(a[2], b[0]), Distance(a[3], b[0])));
+inline int HammingDistance(const Rotations& a, const Rotations& b) {
+  return std::min(std::min(HammingDistance(a[0], b[0]), HammingDistance(a[1], b[0])),
+                  std::min(HammingDistance(a[2], b[0]), HammingDistance(a[3], b[0])));
 }
 
 // The smallest distance of a code from its own rotations. Three quarter turns give the same
 // distance as one.
 inline int DistanceToItself(const Rotations& code) {
-  return std::min(Distance(code[0], code[1]), Distance(code[0], code[2]));
+  return std::min(HammingDistance(code[0], code[1]), HammingDistance(code[0], code[2]));
 }
 
 class CodeSpace {

@@ -57,8 +57,9 @@ class Random {
 };
 
 bool IsFarFromAll(const Rotations& code, const std::vector<Rotations>& others, int distance) {
-  return std::all_of(others.begin(), others.end(),
-                     [&](const Rotations& other) { return Distance(other, code) >= distance; });
+  return std::all_of(others.begin(), others.end(), [&](const Rotations& other) {
+    return HammingDistance(other, code) >= distance;
+  });
 }
 
 // Takes candidates that are far enough from those already taken, until there are `num_codes`. The
@@ -123,7 +124,7 @@ class Annealing {
   int Missing(std::size_t idx, const Rotations& code) const {
     int missing = 2 * Shortage(DistanceToItself(code), distance_);
     for (std::size_t i = 0; i < codes_.size(); ++i) {
-      if (i != idx) missing += Shortage(Distance(codes_[i], code), distance_);
+      if (i != idx) missing += Shortage(HammingDistance(codes_[i], code), distance_);
     }
     return missing;
   }
@@ -131,8 +132,8 @@ class Annealing {
   void Replace(std::size_t idx, const Rotations& code) {
     for (std::size_t i = 0; i < codes_.size(); ++i) {
       if (i == idx) continue;
-      missing_[i] += Shortage(Distance(codes_[i], code), distance_) -
-                     Shortage(Distance(codes_[i], codes_[idx]), distance_);
+      missing_[i] += Shortage(HammingDistance(codes_[i], code), distance_) -
+                     Shortage(HammingDistance(codes_[i], codes_[idx]), distance_);
     }
     codes_[idx] = code;
     missing_[idx] = Missing(idx, code);
@@ -162,7 +163,8 @@ VELAMAP_CLONE_FOR_POPCNT bool Anneal(int num_steps, Random* random, Annealing* a
 int MinDistance(const std::vector<Rotations>& codes, int num_bits) {
   int distance = num_bits;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) distance = std::min(distance, Distance(codes[i], codes[j]));
+    for (std::size_t j = 0; j < i; ++j)
+      distance = std::min(distance, HammingDistance(codes[i], codes[j]));
   }
   return distance;
 }

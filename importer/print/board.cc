@@ -147,8 +147,8 @@ Drawing DrawBoard(const Board& board, const PrintedLook& look, const SheetWords&
   }
   Drawing drawing = DrawPageFrame(board.frame, words, first_mm - board.frame.min_mm.x());
   for (int i = 0; i < board.num_markers; ++i) {
-    drawing.areas.push_back(MarkerArea(look, board.first_id + i, board.length_mm,
-                                       board.marker_min_mm[static_cast<std::size_t>(i)]));
+    drawing.areas.push_back(PrintedMarkerArea(look, board.first_id + i, board.length_mm,
+                                              board.marker_min_mm[static_cast<std::size_t>(i)]));
   }
   FilledArea squares;
   for (const Eigen::Vector2d& min_mm : board.square_min_mm) {

@@ -87,8 +87,8 @@ FilledArea UpArrow(const Eigen::Vector2d& foot_mm, double height_mm) {
           kBlack};
 }
 
-FilledArea MarkerArea(const PrintedLook& look, int marker_id, double length_mm,
-                      const Eigen::Vector2d& min_mm) {
+FilledArea PrintedMarkerArea(const PrintedLook& look, int marker_id, double length_mm,
+                             const Eigen::Vector2d& min_mm) {
   const cv::Mat cells = MarkerCells(look.dictionary, marker_id, look.border_bits);
   FilledArea area;
   area.outlines_mm = OutlineDarkCells(cells);
@@ -134,8 +134,8 @@ Drawing DrawSheet(const Sheet& sheet, const PrintedLook& look, const SheetWords&
   const double first_mm = sheet.stickers.front().min_mm.x() - kCutMark_mm;
   Drawing drawing = DrawPageFrame(sheet.frame, words, first_mm - sheet.frame.min_mm.x());
   for (const Sticker& sticker : sheet.stickers) {
-    drawing.areas.push_back(
-        MarkerArea(look, sticker.marker.marker_id, sticker.marker.length_mm, sticker.SquareMin()));
+    drawing.areas.push_back(PrintedMarkerArea(look, sticker.marker.marker_id,
+                                              sticker.marker.length_mm, sticker.SquareMin()));
     AddLabel(sticker, look, &drawing);
     AddCutMarks(sticker.min_mm, sticker.min_mm + Eigen::Vector2d(sticker.Width(), sticker.Height()),
                 &drawing);
@@ -148,8 +148,8 @@ Drawing DrawSingleMarker(const PrintedMarker& marker, const PrintedLook& look, d
   drawing.width_mm = drawing.height_mm = marker.length_mm + 2 * margin_mm;
   drawing.areas.push_back(
       {{RectangleOutline({0, 0}, {drawing.width_mm, drawing.height_mm})}, Color{1, 1, 1}});
-  drawing.areas.push_back(
-      MarkerArea(look, marker.marker_id, marker.length_mm, Eigen::Vector2d::Constant(margin_mm)));
+  drawing.areas.push_back(PrintedMarkerArea(look, marker.marker_id, marker.length_mm,
+                                            Eigen::Vector2d::Constant(margin_mm)));
   return drawing;
 }
 

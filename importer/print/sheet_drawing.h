@@ -26,8 +26,8 @@ struct SheetWords {
 };
 
 // The dark cells of a marker. `min_mm` is the top left corner of its black square.
-FilledArea MarkerArea(const PrintedLook& look, int marker_id, double length_mm,
-                      const Eigen::Vector2d& min_mm);
+FilledArea PrintedMarkerArea(const PrintedLook& look, int marker_id, double length_mm,
+                             const Eigen::Vector2d& min_mm);
 
 // Draws the text at the top of a page, and at the bottom a scale with the instruction to measure
 // it. If the `free_left_mm` to the left of the markers are wide enough, a second, vertical scale is

@@ -41,7 +41,7 @@ void LocateOrAddRegion(const FrameSearch& search, int marker_id, const TrackPred
 bool SearchRegions(const FrameSearch& search, std::vector<cv::Rect> regions,
                    std::vector<MarkerQuad>* quads) {
   regions = MergeRegions(std::move(regions));
-  if (AreaOf(regions) > kMaxSearchedFraction * search.image_size.area()) return false;
+  if (TotalAreaPx(regions) > kMaxSearchedFraction * search.image_size.area()) return false;
   if (!regions.empty()) {
     const std::vector<MarkerQuad> found = search.search_regions(regions);
     quads->insert(quads->end(), found.begin(), found.end());

@@ -6,7 +6,7 @@
 //      found markers around them; and along the borders where the picture moves inwards.
 //
 // Both passes first try to locate the known marker, and where it is not seen clearly they search
-// the region around it for any marker. Markers that are missing where an earlier shape or the
+// the region around it for any marker. Markers that are missing where the prior shape or the
 // layout's lines expect them are located or searched in the same way.
 //
 // Halfway between two full searches a coarse search of the whole frame finds new large markers. The

@@ -142,7 +142,7 @@ CalibrationEvidence TestCamera(const Model& model, CameraId camera_id,
   evidence.focal_change = fit.changes[kFocal] / half_diagonal_px;
   evidence.focal_sigma = std::sqrt(fit.covariance(kFocal, kFocal)) / half_diagonal_px;
   const RowMajorMatrix errors = design * fit.changes;
-  SetMovement(state, -StepOf(jacobian, covariance, errors).of_points.col(0), &evidence);
+  SetMovement(state, -LeastSquaresStep(jacobian, covariance, errors).of_points.col(0), &evidence);
   return evidence;
 }
 

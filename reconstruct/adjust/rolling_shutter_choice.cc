@@ -57,7 +57,7 @@ void WarnOfSlowShutter(const AdjustmentUncertainty& uncertainty, MarkerSolution*
   if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
   solution->warnings.push_back(fmt::format(
       "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
-      "the video stabilised, slowed down or sped up? Film without stabilisation, at normal speed",
+      "the video stabilized, slowed down or sped up? Film without stabilization, at normal speed",
       1e3 * std::abs(uncertainty.rolling_shutter_s), 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 

@@ -230,8 +230,8 @@ std::string DescribeStep(const FocalStep& step) {
 
 std::string DescribeWander(const PrincipalPointWander& wander) {
   return fmt::format(
-      "the principal point wanders by {:.0f} px from picture to picture, as in a stabilised clip: "
-      "switch stabilisation off and film again",
+      "the principal point wanders by {:.0f} px from picture to picture, as in a stabilized clip: "
+      "switch stabilization off and film again",
       wander.spread_px);
 }
 

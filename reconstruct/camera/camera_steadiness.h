@@ -1,7 +1,7 @@
 // Tells whether all images of a model were taken by one camera with an unchanged lens.
 //
 // The points stay where the model has them, and every image gets its own pose, focal length and
-// principal point. A lens that was zoomed, a second camera and a stabilised picture, whose
+// principal point. A lens that was zoomed, a second camera and a stabilized picture, whose
 // principal point wanders, show as values that scatter beyond their sigmas.
 
 #pragma once

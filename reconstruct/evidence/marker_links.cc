@@ -178,14 +178,14 @@ std::optional<double> BendAtGap(const std::vector<OrientedMarker>& markers, cons
                                 const MarkerChain& b) {
   if (!FaceTheSameWay(markers[a.back()], markers[b.front()])) return std::nullopt;
   const Eigen::Vector3d gap = markers[b.front()].center_m - markers[a.back()].center_m;
-  const double step = StepOf(markers, a);
+  const double step = SpacingOf(markers, a);
   if (gap.norm() > kMaxGap * step) return std::nullopt;
   if (IsBeside(markers[a[a.size() - 2]], markers[a.back()], markers[b.front()])) {
     return std::nullopt;
   }
   double bend = AngleBetween(markers[a.back()].center_m - markers[a[a.size() - 2]].center_m, gap);
   if (b.size() > 1) {
-    if (!AreLike(step, StepOf(markers, b))) return std::nullopt;
+    if (!AreLike(step, SpacingOf(markers, b))) return std::nullopt;
     bend = std::max(bend, AngleBetween(gap, markers[b[1]].center_m - markers[b.front()].center_m));
   }
   if (bend > kMaxBendAtGap) return std::nullopt;
@@ -246,7 +246,7 @@ double Distance(const OrientedMarker& a, const OrientedMarker& b) {
   return (a.center_m - b.center_m).norm();
 }
 
-double StepOf(const std::vector<OrientedMarker>& markers, const MarkerChain& chain) {
+double SpacingOf(const std::vector<OrientedMarker>& markers, const MarkerChain& chain) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < chain.size(); ++i) {
     steps.push_back(Distance(markers[chain[i - 1]], markers[chain[i]]));

@@ -29,7 +29,7 @@ bool ShareMarkers(const MarkerChain& a, const MarkerChain& b);
 double Distance(const OrientedMarker& a, const OrientedMarker& b);
 
 // The median distance between neighbours of the chain, which has at least two markers.
-double StepOf(const std::vector<OrientedMarker>& markers, const MarkerChain& chain);
+double SpacingOf(const std::vector<OrientedMarker>& markers, const MarkerChain& chain);
 
 // Each chain has at least two markers. A marker may be on several chains, but a pair of neighbours
 // is on only one.

@@ -42,7 +42,7 @@ class RowFinder {
     std::vector<Row> short_rows;
     for (const MarkerChain& chain : FindChains(markers_)) {
       Row row{chain, markers_[chain.back()].center_m - markers_[chain.front()].center_m,
-              StepOf(markers_, chain)};
+              SpacingOf(markers_, chain)};
       row.direction.normalize();
       (chain.size() >= kMinOnRow ? rows_ : short_rows).push_back(std::move(row));
     }

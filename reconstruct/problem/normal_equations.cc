@@ -234,8 +234,9 @@ void MultiplyByCovariance(const MarkerCovariance& covariance, ParameterColumns* 
   root.transpose().solveInPlace(globals);
 }
 
-ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
-                        const RowMajorMatrix& errors) {
+ParameterColumns LeastSquaresStep(const MarkerJacobian& jacobian,
+                                  const MarkerCovariance& covariance,
+                                  const RowMajorMatrix& errors) {
   ParameterColumns step = ZeroColumns(covariance, errors.cols());
   Eigen::Index row = 0;
   for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
@@ -250,7 +251,7 @@ ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& 
 
 RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                           const RowMajorMatrix& errors) {
-  const ParameterColumns step = StepOf(jacobian, covariance, errors);
+  const ParameterColumns step = LeastSquaresStep(jacobian, covariance, errors);
   RowMajorMatrix left = errors;
   Eigen::Index row = 0;
   for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {

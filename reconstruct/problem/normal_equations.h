@@ -65,16 +65,16 @@ struct ParameterColumns {
 
 // The least-squares step for `errors` of all residuals, one row for each residual (corners, then
 // priors) and one column for each case: covariance * J^T errors.
-ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
-                        const RowMajorMatrix& errors);
+ParameterColumns LeastSquaresStep(const MarkerJacobian& jacobian,
+                                  const MarkerCovariance& covariance, const RowMajorMatrix& errors);
 
-// What remains of the errors in the residuals after the step of StepOf().
+// What remains of the errors in the residuals after the step of LeastSquaresStep().
 RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                           const RowMajorMatrix& errors);
 
-// Building blocks of StepOf() and ErrorsLeft(). AddGradient() adds J^T errors of one residual
-// block, whose rows begin at `row`, to the columns from `column` on. MultiplyByCovariance()
-// multiplies all columns by the covariance.
+// Building blocks of LeastSquaresStep() and ErrorsLeft(). AddGradient() adds J^T errors of one
+// residual block, whose rows begin at `row`, to the columns from `column` on.
+// MultiplyByCovariance() multiplies all columns by the covariance.
 void AddGradient(const ResidualJacobian& block, const MarkerCovariance& covariance,
                  const RowMajorMatrix& errors, Eigen::Index row, Eigen::Index column,
                  ParameterColumns* gradient);

@@ -29,7 +29,7 @@ struct MarkerSizeVerdict {
 // Compares the mean side of each marker with the median of all markers. `covariance` must come from
 // a solution in which the printed sizes had hardly any weight. `inset_sigmas` holds, by marker id,
 // the sigma of the marker's size that is due to the inset of its corners, which is the same in all
-// images; it is a fraction, and 0 for markers that the map lacks. `print_tolerance` is 1 sigma of a
+// images; it is a fraction, and 0 for ids that it lacks. `print_tolerance` is 1 sigma of a
 // printed side, as a fraction. A marker contradicts the others if it deviates by more than four
 // sigmas of image noise, inset and print tolerance together and two thirds of the markers agree.
 // The print tolerance is raised where the markers scatter more (JudgeDeviations()). With fewer than

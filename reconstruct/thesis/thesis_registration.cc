@@ -171,7 +171,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   registration.central_reason = central.reason;
   if (!options.thesis.IsExact()) RefineShape(&state);
   if (!state.alignments[central_idx] || state.NumRegistered() < min_num_registered) {
-    throw DataError("no image shares enough markers with the central image " +
+    throw DataError("no frame shares enough markers with the central frame " +
                     registration.central_image_name + ": at least " +
                     std::to_string(options.min_num_inliers) +
                     " markers must be seen together in two images");

@@ -69,7 +69,7 @@ TEST_F(FrameCamera, AnUnknownCameraBeginsWithWhatExifClaims) {
   EXPECT_EQ(CameraOfFrame(options_, true, WritePhoto(400, 300, 0, 26)), UnknownCamera(400, 300));
 }
 
-TEST_F(FrameCamera, RecognisesItsCalibrationInEitherOrientation) {
+TEST_F(FrameCamera, RecognizesItsCalibrationInEitherOrientation) {
   options_.camera = kPortrait;
   EXPECT_TRUE(IsSameCalibration(options_, kPortrait));
   EXPECT_TRUE(IsSameCalibration(options_, TurnCamera(kPortrait, -1)));

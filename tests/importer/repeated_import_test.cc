@@ -45,7 +45,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
 }
 
 // Markers 5 and 6 are visible in some of the frames only.
-TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
+TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAPriorShape) {
   options_.detection.estimate_formation = false;
   options_.image_path = dir_ / "video.avi";
   {

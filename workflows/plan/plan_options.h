@@ -36,7 +36,8 @@ struct ShootPlanOptions {
   double turn_rate_deg_s = 10.0;
 
   // 1 sigma of a corner's coordinate on a marker of 20 px, including errors that neighbouring
-  // frames share. Rendered clips of an action camera (crf 18 to 23) had 0.056 to 0.09 px.
+  // frames share: two thirds more than single corners of rendered clips of an action camera have
+  // (workflows/studies/shooting.sh).
   double corner_sigma_px = 0.075;
 
   // The shape of a sail for which none is given.

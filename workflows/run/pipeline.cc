@@ -70,7 +70,7 @@ void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
 
 void LogSeed(const SeedResult& seed) {
   const Registration& registration = seed.registration;
-  LogInfo("central image {}: {}", registration.central_image_name, registration.central_reason);
+  LogInfo("central frame {}: {}", registration.central_image_name, registration.central_reason);
   for (const std::string& note : registration.notes) LogInfo(note);
   LogInfo("{} of {} images registered, {} markers", seed.model.images.size(),
           seed.image_names.size(), registration.shape.size());

@@ -96,7 +96,7 @@ function imageChart(id, captionId, title, unit, images, value, meaning) {
       },
     },
   });
-  byId(captionId).textContent = `${meaning} The central image is orange.`;
+  byId(captionId).textContent = `${meaning} The central frame is orange.`;
 }
 
 function scaleChart(data) {

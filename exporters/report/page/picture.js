@@ -107,7 +107,7 @@ function fillPicture(picture) {
   }
   if (picture.jpeg) {
     byId('picture').append(element('img', {
-      src: `data:image/jpeg;base64,${picture.jpeg}`, alt: `The central image ${picture.name}`}));
+      src: `data:image/jpeg;base64,${picture.jpeg}`, alt: `The central frame ${picture.name}`}));
   }
   byId('picture').append(svg);
   byId('picture_caption').textContent =

@@ -122,14 +122,14 @@ TEST(Verdict, BlamesTheClipWhereTheCameraWasFoundFromIt) {
 
 TEST(Verdict, AWarningThatACardRepeatsIsOneReason) {
   KeyNumber number = Number(KeyNumberKind::kSteadiness, ReportStatus::kBad);
-  number.advice = "switch stabilisation off";
-  const Verdict verdict = MakeVerdict({number}, {"switch stabilisation off", "another warning"});
+  number.advice = "switch stabilization off";
+  const Verdict verdict = MakeVerdict({number}, {"switch stabilization off", "another warning"});
   EXPECT_EQ(verdict.level, ReportStatus::kBad);
   ASSERT_EQ(verdict.reasons.size(), 2u);
   EXPECT_EQ(verdict.reasons.back().text, "another warning");
 }
 
-TEST(Verdict, AStabilisedOrZoomedClipIsBadWhereItSpoilsTheShape) {
+TEST(Verdict, AStabilizedOrZoomedClipIsBadWhereItSpoilsTheShape) {
   const ReportExample example = MakeReportExample(2, 4);
   const auto verdict = [&](const SteadinessVerdict& steadiness) {
     ReportInput input = example.Input();

@@ -42,7 +42,7 @@ TEST(TurnedCamera, FourQuartersChangeNothing) {
   }
 }
 
-TEST(TurnedCamera, RecognisesTransposedSizes) {
+TEST(TurnedCamera, RecognizesTransposedSizes) {
   const Camera& camera = kCameras.front();
   EXPECT_TRUE(IsTransposedSize(camera, 3000, 4000));
   EXPECT_TRUE(IsTransposedSize(camera, 1500, 2000));

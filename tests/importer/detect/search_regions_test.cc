@@ -16,7 +16,7 @@ TEST(MergeRegions, CoversTheSameAndCostsNoMore) {
   const std::vector<cv::Rect> merged = MergeRegions(regions);
   EXPECT_EQ(merged.size(), 3u);
   const auto cost_px = [](const std::vector<cv::Rect>& searched) {
-    return AreaOf(searched) + kCallCostPx * static_cast<double>(searched.size());
+    return TotalAreaPx(searched) + kCallCostPx * static_cast<double>(searched.size());
   };
   EXPECT_LE(cost_px(merged), cost_px(regions));
   for (const cv::Rect& region : regions) {

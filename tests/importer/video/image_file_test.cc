@@ -118,7 +118,7 @@ void WriteBytes(const std::string& path, const std::vector<std::uint8_t>& bytes)
              static_cast<std::streamsize>(bytes.size()));
 }
 
-// A decoder resynchronises with right pixels in the wrong place.
+// A decoder resynchronizes with right pixels in the wrong place.
 TEST(DecodeImageFile, AJpegWithADamagedMiddleIsNotUsedWithoutAWord) {
   const TempDir dir;
   cv::RNG random(3);

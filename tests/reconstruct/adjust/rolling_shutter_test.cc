@@ -196,9 +196,9 @@ TEST_F(RollingShutter, IsNotLookedForWithoutFramesBeside) {
 
 TEST_F(RollingShutter, LongerThanCamerasTakeIsAWarning) {
   Film(0.03, 0.05, 1);
-  EXPECT_THAT(Adjust().warnings, Not(Contains(HasSubstr("stabilised"))));
+  EXPECT_THAT(Adjust().warnings, Not(Contains(HasSubstr("stabilized"))));
   Film(0.06, 0.05, 1);
-  EXPECT_THAT(Adjust().warnings, Contains(HasSubstr("stabilised")));
+  EXPECT_THAT(Adjust().warnings, Contains(HasSubstr("stabilized")));
 }
 
 }  // namespace

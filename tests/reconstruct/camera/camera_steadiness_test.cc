@@ -63,7 +63,7 @@ TEST(CameraSteadiness, AZoomIsFoundWhereItBegins) {
               HasSubstr("about frame_000012.jpg: the lens was zoomed"));
 }
 
-TEST(CameraSteadiness, AStabilisedClipIsRecognised) {
+TEST(CameraSteadiness, AStabilizedClipIsRecognized) {
   const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
     camera->params[2] += 40 * std::sin(1.7 * frame_idx);
     camera->params[3] += 30 * std::cos(2.3 * frame_idx);
@@ -71,10 +71,10 @@ TEST(CameraSteadiness, AStabilisedClipIsRecognised) {
   ASSERT_TRUE(verdict.wander);
   EXPECT_TRUE(verdict.wander->SpoilsShape());
   EXPECT_NEAR(verdict.wander->spread_px, 1.48 * 40 / std::sqrt(2), 8);  // robust, of a sine
-  EXPECT_THAT(DescribeWander(*verdict.wander), HasSubstr("stabilised"));
+  EXPECT_THAT(DescribeWander(*verdict.wander), HasSubstr("stabilized"));
 }
 
-TEST(CameraSteadiness, AStabiliserThatHardlyMovesDoesNotSpoilTheShape) {
+TEST(CameraSteadiness, AStabilizerThatHardlyMovesDoesNotSpoilTheShape) {
   const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
     camera->params[2] += 0.008 * camera->params[0] * std::sin(1.7 * frame_idx);
   }));
