@@ -63,7 +63,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
           turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
                : SearchInWholeFrame(detector_, result.camera, frame->gray,
                                     &result.prior_shape_agreement);
-      result.detections = DetectInFrame(detector_, *frame, quads);
+      result.detections = DetectInFrame(detector_, *frame, result.camera, quads);
     }
     WriteImage(*frame, result.detections);
     AddToSample(frame_idx, frame->gray);

@@ -33,7 +33,7 @@ house_folder(importer/detect PUBLIC
 house_folder(importer/rotation PUBLIC
   rotation_ambiguity rotation_evidence)
 house_folder(importer/pattern PUBLIC
-  clipped_pixels fit_equations formation_estimate image_formation marker_print pattern_fit
+  clipped_pixels fit_equations formation_estimate image_formation known_marker lens_bend pattern_fit
   pattern_picture pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
   marker_detector read_again)

@@ -9,7 +9,7 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/marker_print.h"
+#include "importer/pattern/known_marker.h"
 #include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
@@ -17,7 +17,7 @@ namespace velamap {
 struct FormationSample {
   cv::Mat gray;            // 8 bit: the marker with half a side around it, dark cells dark
   QuadCorners corners_px;  // OpenCV's pixel frame of `gray`, to a pixel
-  MarkerPrint print;
+  KnownMarker print;
 };
 
 struct SamplePlace {

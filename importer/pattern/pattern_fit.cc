@@ -59,9 +59,9 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> MismatchedCells(const PatternProbl
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
       const double u = (column + 0.5) / n, v = (row + 0.5) / n;
-      const Eigen::Vector2d x_px = map.ToImage(u, v) +
-                                   4 * u * (1 - u) * parameters.segment<2>(P::kBendU) +
-                                   4 * v * (1 - v) * parameters.segment<2>(P::kBendV);
+      const Eigen::Vector2d x_px =
+          map.ToImage(u, v) + 4 * u * (1 - u) * parameters.segment<2>(P::kBendU) +
+          4 * v * (1 - v) * parameters.segment<2>(P::kBendV) + problem.model.lens_bend.At(u, v);
       const Eigen::Vector2d place = x_px - problem.model.center_px;
       picture.At(AllLanes(place.x()), AllLanes(place.y()), &modelled);
       const double excess_gray = InterpolatePatch(problem.patch, x_px) - modelled.gray[0];
@@ -77,13 +77,13 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> MismatchedCells(const PatternProbl
 }  // namespace
 
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const MarkerPrint& print,
+                                         const KnownMarker& marker,
                                          const ImageFormation& formation) {
-  const cv::Mat& cells = print.cells;
+  const cv::Mat& cells = marker.cells;
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols);
   PatternMinimum minimum;
   std::optional<PatternProblem> problem =
-      MakePatternProblem(gray, corners_px, print, formation, &minimum);
+      MakePatternProblem(gray, corners_px, marker, formation, &minimum);
   if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
   const double rms_gray = minimum.equations.Rms();
   if ((HasClippedPixels(gray, problem->box) &&

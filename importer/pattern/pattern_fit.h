@@ -5,13 +5,13 @@
 // light is modelled as
 //
 //   L(x) = (1 + gradient . x) * (dark + (light - dark) * sum_ij cell_ij a_i(u) b_j(v))
-//   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v
+//   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v + lens(u, v)
 //
 // and becomes grey values by the image formation (image_formation.h). H is the homography of
-// the four corners; the bends (px) are due to cloth or a lens; a_i and b_j are the unit steps of
-// column i and row j blurred by a Gaussian (px; separate widths along u and v model motion blur as
-// well). A quiet zone surrounds the black square; beyond its width, which is fitted for each side,
-// lie the surroundings as the image shows them.
+// the four corners; the bends (px) are due to cloth, and lens(u, v) to the lens (lens_bend.h); a_i
+// and b_j are the unit steps of column i and row j blurred by a Gaussian (px; separate widths along
+// u and v model motion blur as well). A quiet zone surrounds the black square; beyond its width,
+// which is fitted for each side, lie the surroundings as the image shows them.
 
 #pragma once
 
@@ -21,7 +21,7 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/marker_print.h"
+#include "importer/pattern/known_marker.h"
 #include "importer/pattern/refined_corners.h"
 
 namespace velamap {
@@ -29,6 +29,7 @@ namespace velamap {
 // Corners in OpenCV's pixel frame. Nothing if the marker leaves the image, has too little contrast
 // or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const MarkerPrint& print, const ImageFormation& formation);
+                                         const KnownMarker& marker,
+                                         const ImageFormation& formation);
 
 }  // namespace velamap

@@ -44,6 +44,11 @@ class PatternPicture {
     QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
+    LensBend::Coefficients bends_px = model.lens_bend.coefficients_px;
+    num_rounds_ = bends_px.isZero(0) ? 2 : 3;
+    bends_px.col(0) += parameters.segment<2>(P::kBendU);
+    bends_px.col(3) += parameters.segment<2>(P::kBendV);
+    bends_px_ = bends_px.cast<float>();
   }
 
   // Whether the model covers a place, inside or near the black square; -1 for yes.
@@ -248,11 +253,15 @@ class PatternPicture {
                 scale * (m(0, 1) - flat_u * m(2, 1)),
                 scale * (m(1, 0) - flat_v * m(2, 0)),
                 scale * (m(1, 1) - flat_v * m(2, 1))};
-    const Eigen::Vector4f bends = parameters_.segment<4>(P::kBendU).cast<float>();
-    for (int i = 0; i < 2; ++i) {
+    const Eigen::Matrix<float, 2, 6>& b = bends_px_;
+    for (int i = 0; i < num_rounds_; ++i) {
       const Floats hump_u = Hump(place.u), hump_v = Hump(place.v);
-      const Floats bend_x = hump_u * bends[0] + hump_v * bends[2];
-      const Floats bend_y = hump_u * bends[1] + hump_v * bends[3];
+      const Floats tilt_u = 2.0f * place.u - 1.0f, tilt_v = 2.0f * place.v - 1.0f;
+      const auto bend = [&](int axis) {
+        return hump_u * (b(axis, 0) + tilt_v * b(axis, 1) + tilt_u * b(axis, 2)) +
+               hump_v * (b(axis, 3) + tilt_u * b(axis, 4) + tilt_v * b(axis, 5));
+      };
+      const Floats bend_x = bend(0), bend_y = bend(1);
       place.u = flat_u - place.u_by_x * bend_x - place.u_by_y * bend_y;
       place.v = flat_v - place.v_by_x * bend_x - place.v_by_y * bend_y;
     }
@@ -280,6 +289,8 @@ class PatternPicture {
   float direct_share_;  // of the light, which the halo does not scatter
   PatternParameters::Vector parameters_;
   Eigen::Matrix3f square_from_image_;
+  Eigen::Matrix<float, 2, 6> bends_px_;  // of cloth and lens, as in LensBend
+  int num_rounds_;                       // until the bends are undone to 0.01 px
 };
 
 }  // namespace velamap

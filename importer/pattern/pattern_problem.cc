@@ -123,16 +123,17 @@ bool ReadSurroundingsWrongly(const PatternMinimum& minimum) {
 }  // namespace
 
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
-                                                 const MarkerPrint& print,
+                                                 const KnownMarker& marker,
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum) {
   PatternProblem problem;
-  problem.cells = print.cells;
-  problem.model.num_cells = print.cells.rows;
-  problem.model.side_mm = print.side_mm;
+  problem.cells = marker.cells;
+  problem.model.num_cells = marker.cells.rows;
+  problem.model.side_mm = marker.side_mm;
+  problem.model.lens_bend = marker.lens_bend;
   if (problem.model.num_cells + 2 * kRing > kMaxRingedCells) return std::nullopt;
   const UnitSquareMap map(corners_px);
-  const auto box = CoveredBox(corners_px, map, print.cells.rows, gray);
+  const auto box = CoveredBox(corners_px, map, marker.cells.rows, gray);
   if (!box) return std::nullopt;
   problem.box = *box;
   // The surroundings are read up to two cells away.

@@ -9,7 +9,7 @@
 #include "importer/geometry/quad.h"
 #include "importer/pattern/fit_equations.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/marker_print.h"
+#include "importer/pattern/known_marker.h"
 #include "importer/pattern/pattern_model.h"
 
 namespace velamap {
@@ -40,7 +40,7 @@ struct PatternMinimum {
 // Corners as in FitPattern(). Nothing where the marker leaves the image, has too many
 // cells or too little contrast. `formation` must outlive the problem. Sets the initial parameters.
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
-                                                 const MarkerPrint& print,
+                                                 const KnownMarker& marker,
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum);
 

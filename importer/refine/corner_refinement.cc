@@ -193,13 +193,13 @@ std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const MarkerPrint& print,
+                                            const KnownMarker& marker,
                                             const ImageFormation& formation) {
-  const cv::Mat& cells = print.cells;
+  const cv::Mat& cells = marker.cells;
   if (!HasCells(corners_px, cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
   QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
-  const auto fitted = FitPattern(gray, start_px, print, formation);
+  const auto fitted = FitPattern(gray, start_px, marker, formation);
   if (fitted && MaxCornerShift(fitted->corners_px, corners_px) <=
                     MaxAllowedShiftPx(cell_px, kMaxPatternShiftPx)) {
     return fitted;
@@ -209,7 +209,7 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
   for (Eigen::Vector2d& corner : start_px) corner -= part.origin_px;
   auto fit = FitBySides(part.gray, start_px, cells.rows);
   if (!fit) return std::nullopt;
-  UndoShiftOfEdges(formation.parameters(), print.side_mm, &*fit);
+  UndoShiftOfEdges(formation.parameters(), marker.side_mm, &*fit);
   for (Eigen::Vector2d& corner : fit->corners.corners_px) corner += part.origin_px;
   return fit->corners;
 }

@@ -15,7 +15,7 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/marker_print.h"
+#include "importer/pattern/known_marker.h"
 #include "importer/pattern/refined_corners.h"
 
 namespace velamap {
@@ -32,7 +32,7 @@ std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
 // curve shifts edges, and then moved back by ink spread and the other known shifts of edges.
 // Returns nothing if both fail or move a corner too far.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const MarkerPrint& print,
+                                            const KnownMarker& marker,
                                             const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

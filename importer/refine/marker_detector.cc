@@ -43,14 +43,16 @@ std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const 
                                             const Dictionary& dictionary, int border_bits,
                                             const ArucoDetectionOptions& options,
                                             const ImageFormation& formation,
-                                            const std::vector<double>& sides_mm) {
+                                            const std::vector<double>& sides_mm,
+                                            const Camera* camera) {
   ReadMarker read{found, {}};
   auto& [quad, refined] = read;
   const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
   if (options.corner_refinement == CornerRefinement::kNone) {
     refined = RefinedCorners{found.corners_px};
   } else if (fits_edges) {
-    read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation, sides_mm);
+    read = RefineAndReadAgain(dark_on_light, found, dictionary, border_bits, formation, sides_mm,
+                              camera);
   }
   const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
   const bool is_fitted = refined.has_value();
@@ -99,19 +101,17 @@ void AddReading(const FittedDetection& reading, std::vector<FittedDetection>* de
 
 }  // namespace
 
-std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
-                                           const std::vector<MarkerQuad>& quads,
-                                           const Dictionary& dictionary, int border_bits,
-                                           const ArucoDetectionOptions& options,
-                                           const ImageFormation& formation,
-                                           const std::vector<double>& sides_mm) {
+std::vector<MarkerDetection> RefineMarkers(
+    const cv::Mat& gray, const std::vector<MarkerQuad>& quads, const Dictionary& dictionary,
+    int border_bits, const ArucoDetectionOptions& options, const ImageFormation& formation,
+    const std::vector<double>& sides_mm, const Camera* camera) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
   const cv::Mat dark_on_light = options.inverted ? cv::Mat(~gray) : gray;
   std::vector<FittedDetection> fitted;
   for (const MarkerQuad& quad : quads) {
     const StageTimer timer(ImportStage::kRefine);
-    const auto reading =
-        RefineMarker(dark_on_light, quad, dictionary, border_bits, options, formation, sides_mm);
+    const auto reading = RefineMarker(dark_on_light, quad, dictionary, border_bits, options,
+                                      formation, sides_mm, camera);
     if (reading) AddReading(*reading, &fitted);
   }
   std::vector<MarkerDetection> detections;

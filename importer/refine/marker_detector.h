@@ -7,6 +7,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_quad.h"
@@ -22,12 +23,13 @@ namespace velamap {
 // readings at one place, the one that fits best is kept. Leaves out markers that only a second look
 // has found and that cannot be fitted. Ids may occur more than once (duplicates.h). Thread-safe;
 // colours are left zero. `sides_mm`, by id, are the sides of the printed squares; where one is
-// missing or 0, it is 100 mm.
+// missing or 0, it is 100 mm. The camera, which may be null, says how its lens bends the markers.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
                                            const ArucoDetectionOptions& options,
                                            const ImageFormation& formation = ImageFormation(),
-                                           const std::vector<double>& sides_mm = {});
+                                           const std::vector<double>& sides_mm = {},
+                                           const Camera* camera = nullptr);
 
 }  // namespace velamap

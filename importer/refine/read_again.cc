@@ -3,41 +3,43 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "importer/pattern/lens_bend.h"
 #include "importer/refine/corner_refinement.h"
 
 namespace velamap {
 namespace {
 
-MarkerPrint PrintOf(const Dictionary& dictionary, int marker_id, int border_bits,
-                    const std::vector<double>& sides_mm) {
-  MarkerPrint print{MarkerCells(dictionary, marker_id, border_bits)};
-  const auto idx = static_cast<std::size_t>(marker_id);
-  if (idx < sides_mm.size() && sides_mm[idx] > 0) print.side_mm = sides_mm[idx];
-  return print;
+KnownMarker KnownOf(const MarkerQuad& quad, const Dictionary& dictionary, int border_bits,
+                    const std::vector<double>& sides_mm, const Camera* camera) {
+  KnownMarker marker{MarkerCells(dictionary, quad.marker_id, border_bits)};
+  const auto idx = static_cast<std::size_t>(quad.marker_id);
+  if (idx < sides_mm.size() && sides_mm[idx] > 0) marker.side_mm = sides_mm[idx];
+  if (camera != nullptr) marker.lens_bend = BendByLens(*camera, quad.corners_px);
+  return marker;
 }
 
 }  // namespace
 
 ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
                               const Dictionary& dictionary, int border_bits,
-                              const ImageFormation& formation,
-                              const std::vector<double>& sides_mm) {
+                              const ImageFormation& formation, const std::vector<double>& sides_mm,
+                              const Camera* camera) {
   constexpr double kClearlyBetter = 0.7;
-  MarkerPrint print = PrintOf(dictionary, quad.marker_id, border_bits, sides_mm);
-  ReadMarker first{quad, RefineCorners(gray, quad.corners_px, print, formation)};
+  KnownMarker marker = KnownOf(quad, dictionary, border_bits, sides_mm, camera);
+  ReadMarker first{quad, RefineCorners(gray, quad.corners_px, marker, formation)};
   if (!first.refined || first.refined->mismatched_cells.empty()) return first;
   for (const cv::Point& cell : first.refined->mismatched_cells) {
-    std::uint8_t& value = print.cells.at<std::uint8_t>(cell);
+    std::uint8_t& value = marker.cells.at<std::uint8_t>(cell);
     value = value == 0 ? 255 : 0;
   }
-  const auto code = ReadCells(dictionary, print.cells, border_bits);
+  const auto code = ReadCells(dictionary, marker.cells, border_bits);
   if (!code) return first;
   ReadMarker second{quad, {}};
   second.quad.marker_id = code->marker_id;
   QuadCorners& corners_px = second.quad.corners_px;
   std::rotate(corners_px.begin(), corners_px.begin() + code->first_corner, corners_px.end());
-  print = PrintOf(dictionary, code->marker_id, border_bits, sides_mm);
-  second.refined = RefineCorners(gray, corners_px, print, formation);
+  marker = KnownOf(second.quad, dictionary, border_bits, sides_mm, camera);
+  second.refined = RefineCorners(gray, corners_px, marker, formation);
   const bool is_better = second.refined && second.refined->rms_gray > 0 &&
                          second.refined->rms_gray < kClearlyBetter * first.refined->rms_gray;
   return is_better ? second : first;

@@ -9,6 +9,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/camera/camera.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/layout/dictionary.h"
 #include "importer/pattern/image_formation.h"
@@ -25,10 +26,11 @@ struct ReadMarker {
 
 // `gray`: 8-bit, with dark markers on light paper. The id changes where the cells that the image
 // shows are the code of another marker of the dictionary, and this one fits clearly better.
-// `sides_mm` as in RefineMarkers().
+// `sides_mm` and `camera` as in RefineMarkers().
 ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
                               const Dictionary& dictionary, int border_bits,
                               const ImageFormation& formation,
-                              const std::vector<double>& sides_mm = {});
+                              const std::vector<double>& sides_mm = {},
+                              const Camera* camera = nullptr);
 
 }  // namespace velamap

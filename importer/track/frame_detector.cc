@@ -236,12 +236,12 @@ std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, con
 }
 
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const std::vector<MarkerQuad>& quads) {
+                              const Camera& camera, const std::vector<MarkerQuad>& quads) {
   FrameDetections detections{frame.image_name, frame.frame_number, frame.time_s, {}, {}};
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
        RefineMarkers(frame.gray, quads, detector.dictionary, detector.border_bits, detector.options,
-                     detector.formation, detector.sides_mm)) {
+                     detector.formation, detector.sides_mm, &camera)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

@@ -96,6 +96,6 @@ void CheckDictionaryOf(const std::string& description, const Layout& layout,
 
 // The steps after the search. `quads` are the markers found in the frame. Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const std::vector<MarkerQuad>& quads);
+                              const Camera& camera, const std::vector<MarkerQuad>& quads);
 
 }  // namespace velamap

@@ -83,7 +83,7 @@ TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
     cv::bilateralFilter(grid.image.clone(), grid.image, 5, 18, 1.2);
     ImageFormationParameters found = EstimateFormation(Samples(grid), false).parameters;
     const double bias_px = SlantBias(grid, scene.side_px, ImageFormation(found));
-    found.ink_spread_mm += MarkerPrint().side_mm * found.edge_shift_blurs *
+    found.ink_spread_mm += KnownMarker().side_mm * found.edge_shift_blurs *
                            scene.rendering.blur_sigma_px / scene.side_px;
     found.edge_shift_blurs = 0.0;
     const double as_ink_px = SlantBias(grid, scene.side_px, ImageFormation(found));

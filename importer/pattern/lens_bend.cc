@@ -1,0 +1,68 @@
+#include "importer/pattern/lens_bend.h"
+
+#include <Eigen/QR>
+
+#include "importer/geometry/unit_square_map.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kPlacesASide = 5;
+constexpr int kNumPlaces = kPlacesASide * kPlacesASide;
+using Terms = Eigen::Matrix<double, 6, 1>;
+
+double Hump(double t) { return 4 * t * (1 - t); }
+
+Terms TermsAt(double u, double v) {
+  const double tilt_u = 2 * u - 1, tilt_v = 2 * v - 1;
+  Terms terms;
+  terms << Hump(u) * Eigen::Vector3d(1, tilt_v, tilt_u),
+      Hump(v) * Eigen::Vector3d(1, tilt_u, tilt_v);
+  return terms;
+}
+
+Eigen::Vector2d PlaceOf(int idx) {
+  constexpr double kStep = 1.0 / (kPlacesASide - 1);
+  return {kStep * (idx % kPlacesASide), kStep * (idx / kPlacesASide)};
+}
+
+// The coefficients that fit displacements at all places best, as a linear function of these.
+Eigen::Matrix<double, 6, kNumPlaces> CoefficientsByDisplacements() {
+  Eigen::Matrix<double, kNumPlaces, 6> terms;
+  for (int i = 0; i < kNumPlaces; ++i) {
+    terms.row(i) = TermsAt(PlaceOf(i).x(), PlaceOf(i).y()).transpose();
+  }
+  return terms.colPivHouseholderQr().solve(
+      Eigen::Matrix<double, kNumPlaces, kNumPlaces>::Identity());
+}
+
+}  // namespace
+
+Eigen::Vector2d LensBend::At(double u, double v) const { return coefficients_px * TermsAt(u, v); }
+
+LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
+  constexpr double kNegligible_px = 1e-6;
+  static const auto kByDisplacements = CoefficientsByDisplacements();
+  const Eigen::Vector2d image_from_opencv = Eigen::Vector2d::Constant(kImageFromOpenCvPx);
+  QuadCorners rays;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const auto ray = CamFromImage(camera, corners_px[i] + image_from_opencv);
+    if (!ray) return {};
+    rays[i] = *ray;
+  }
+  const UnitSquareMap flat_map(corners_px), ray_map(rays);
+  Eigen::Matrix<double, 2, kNumPlaces> displacements_px;
+  for (int i = 0; i < kNumPlaces; ++i) {
+    const Eigen::Vector2d uv = PlaceOf(i);
+    const Eigen::Vector2d ray = ray_map.ToImage(uv.x(), uv.y());
+    const auto x_px = ImageFromCam(camera, ray.homogeneous());
+    if (!x_px) return {};
+    displacements_px.col(i) = *x_px - image_from_opencv - flat_map.ToImage(uv.x(), uv.y());
+  }
+  if (!displacements_px.allFinite() || displacements_px.cwiseAbs().maxCoeff() < kNegligible_px) {
+    return {};
+  }
+  return {displacements_px * kByDisplacements.transpose()};
+}
+
+}  // namespace velamap
