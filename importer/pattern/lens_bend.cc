@@ -7,38 +7,40 @@
 namespace velamap {
 namespace {
 
-constexpr int kPlacesASide = 5;
-constexpr int kNumPlaces = kPlacesASide * kPlacesASide;
-using Terms = Eigen::Matrix<double, 6, 1>;
+constexpr int kGridPlacesASide = 5;
+constexpr int kNumGridPlaces = kGridPlacesASide * kGridPlacesASide;
+using LensTerms = Eigen::Matrix<double, 6, 1>;
 
 double Hump(double t) { return 4 * t * (1 - t); }
 
-Terms TermsAt(double u, double v) {
+LensTerms LensTermsAt(double u, double v) {
   const double tilt_u = 2 * u - 1, tilt_v = 2 * v - 1;
-  Terms terms;
+  LensTerms terms;
   terms << Hump(u) * Eigen::Vector3d(1, tilt_v, tilt_u),
       Hump(v) * Eigen::Vector3d(1, tilt_u, tilt_v);
   return terms;
 }
 
-Eigen::Vector2d PlaceOf(int idx) {
-  constexpr double kStep = 1.0 / (kPlacesASide - 1);
-  return {kStep * (idx % kPlacesASide), kStep * (idx / kPlacesASide)};
+Eigen::Vector2d GridPlace(int idx) {
+  constexpr double kStep = 1.0 / (kGridPlacesASide - 1);
+  return {kStep * (idx % kGridPlacesASide), kStep * (idx / kGridPlacesASide)};
 }
 
 // The coefficients that fit displacements at all places best, as a linear function of these.
-Eigen::Matrix<double, 6, kNumPlaces> CoefficientsByDisplacements() {
-  Eigen::Matrix<double, kNumPlaces, 6> terms;
-  for (int i = 0; i < kNumPlaces; ++i) {
-    terms.row(i) = TermsAt(PlaceOf(i).x(), PlaceOf(i).y()).transpose();
+Eigen::Matrix<double, 6, kNumGridPlaces> CoefficientsByDisplacements() {
+  Eigen::Matrix<double, kNumGridPlaces, 6> terms;
+  for (int i = 0; i < kNumGridPlaces; ++i) {
+    terms.row(i) = LensTermsAt(GridPlace(i).x(), GridPlace(i).y()).transpose();
   }
   return terms.colPivHouseholderQr().solve(
-      Eigen::Matrix<double, kNumPlaces, kNumPlaces>::Identity());
+      Eigen::Matrix<double, kNumGridPlaces, kNumGridPlaces>::Identity());
 }
 
 }  // namespace
 
-Eigen::Vector2d LensBend::At(double u, double v) const { return coefficients_px * TermsAt(u, v); }
+Eigen::Vector2d LensBend::At(double u, double v) const {
+  return coefficients_px * LensTermsAt(u, v);
+}
 
 LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
   constexpr double kNegligible_px = 1e-6;
@@ -51,9 +53,9 @@ LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
     rays[i] = *ray;
   }
   const UnitSquareMap flat_map(corners_px), ray_map(rays);
-  Eigen::Matrix<double, 2, kNumPlaces> displacements_px;
-  for (int i = 0; i < kNumPlaces; ++i) {
-    const Eigen::Vector2d uv = PlaceOf(i);
+  Eigen::Matrix<double, 2, kNumGridPlaces> displacements_px;
+  for (int i = 0; i < kNumGridPlaces; ++i) {
+    const Eigen::Vector2d uv = GridPlace(i);
     const Eigen::Vector2d ray = ray_map.ToImage(uv.x(), uv.y());
     const auto x_px = ImageFromCam(camera, ray.homogeneous());
     if (!x_px) return {};
