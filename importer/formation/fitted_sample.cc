@@ -89,7 +89,7 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
   FittedSample fitted;
   fitted.gray = sample.gray;
   auto problem =
-      MakePatternProblem(sample.gray, sample.corners_px, sample.print, formation, &fitted.minimum);
+      MakePatternProblem(sample.gray, sample.corners_px, sample.marker, formation, &fitted.minimum);
   if (!problem || !FitPatternInPasses(&*problem, &fitted.minimum)) return std::nullopt;
   fitted.problem = std::move(*problem);
   fitted.patch_box = cv::Rect(fitted.problem.patch.origin_px, fitted.problem.patch.values.size());

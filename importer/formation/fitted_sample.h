@@ -17,7 +17,7 @@ namespace velamap {
 struct FormationSample {
   cv::Mat gray;            // 8 bit: the marker with half a side around it, dark cells dark
   QuadCorners corners_px;  // OpenCV's pixel frame of `gray`, to a pixel
-  KnownMarker print;
+  KnownMarker marker;
 };
 
 struct SamplePlace {

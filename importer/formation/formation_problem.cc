@@ -83,7 +83,7 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   constexpr double kInkSigma_mm = 0.1;
   constexpr double kMaxInkSpreadSides = 0.1;  // half of a cell of the coarsest markers
   std::vector<double> sides_mm;
-  for (const FormationSample& sample : samples) sides_mm.push_back(sample.print.side_mm);
+  for (const FormationSample& sample : samples) sides_mm.push_back(sample.marker.side_mm);
   const double side_mm = Median(std::move(sides_mm));
   const double ink_sigma = kInkSigma_mm / side_mm;
   const double max_ink = std::min(kMaxInkSpread_mm / side_mm, kMaxInkSpreadSides);

@@ -88,9 +88,9 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
                             ImageFormation(), detector.sides_mm)
              .quad;
   const auto id = static_cast<std::size_t>(quad.marker_id);
-  sample.print.cells = detector.looks[id].cells;
-  if (detector.sides_mm[id] > 0) sample.print.side_mm = detector.sides_mm[id];
-  const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.print.cells});
+  sample.marker.cells = detector.looks[id].cells;
+  if (detector.sides_mm[id] > 0) sample.marker.side_mm = detector.sides_mm[id];
+  const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.marker.cells});
   if (!aligned) return std::nullopt;
   sample.corners_px = *aligned;
   return sample;

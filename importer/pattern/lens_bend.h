@@ -15,8 +15,9 @@ namespace velamap {
 // Displacement of the place (u, v) of the unit square from where the homography of the corners puts
 // it, to third order:
 //
-//   h(u) (c0 + (2v - 1) c1 + (2u - 1) c2) + h(v) (c3 + (2u - 1) c4 + (2v - 1) c5),  h(t) = 4t (1 -
-//   t)
+//   h(u) (c0 + (2v - 1) c1 + (2u - 1) c2) + h(v) (c3 + (2u - 1) c4 + (2v - 1) c5)
+//
+// with h(t) = 4t (1 - t).
 struct LensBend {
   using Coefficients = Eigen::Matrix<double, 2, 6>;
 

@@ -19,9 +19,9 @@ struct MapAdjustmentOptions {
   double tolerance = 1e-4;  // relative change of the cost at convergence
 };
 
-// Adjusts the registered frames and the placed markers that at least two of them see, on
-// the inliers. A marker with two places takes part with the better one. The first
-// registered frame is held.
+// Adjusts the registered frames and the placed markers that at least two of them see, on the
+// inliers. A marker with two places takes part with the better one. The first registered frame is
+// held.
 void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
                MapSolution* solution);
 

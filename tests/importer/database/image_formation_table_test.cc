@@ -51,7 +51,7 @@ TEST(ImageFormationTable, HoldsTheMostInkThatAnEstimateOfTinyMarkersGives) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   FormationSample sample;
-  sample.print.side_mm = 1.0;
+  sample.marker.side_mm = 1.0;
   FormationEstimate estimate;
   double& ink_spread = estimate.parameters.ink_spread_mm;
   ink_spread = PriorsFor({sample}).max[kInkSpread];

@@ -77,7 +77,7 @@ double LargestBias(const std::vector<Sheet>& sheets, const SideOf& side_mm_of) {
   std::vector<FormationSample> samples;
   for (const Sheet& sheet : sheets) {
     for (FormationSample sample : Samples(sheet.grid)) {
-      sample.print.side_mm = side_mm_of(sheet);
+      sample.marker.side_mm = side_mm_of(sheet);
       samples.push_back(sample);
     }
   }
