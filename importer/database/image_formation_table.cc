@@ -58,14 +58,15 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   // the ink's spread as a share of the side, which is converted for sides of 100 mm.
   const std::set<std::string> columns = ColumnNames(*database, "image_formation");
   if (columns.empty()) return std::nullopt;
+  const std::string ink_mm =
+      fmt::format("MAX({}, MIN({}, 100 * ink_spread_sides))", -kMaxInkSpread_mm, kMaxInkSpread_mm);
   std::string missing;
-  for (const auto& [column, value] :
-       {std::pair("outline_corner_weight", "1"),
-        {"ink_spread_mm", "MAX(-0.3, MIN(0.3, 100 * ink_spread_sides))"},
-        {"edge_shift_blurs", "0"},
-        {"outline_shift_blurs", "0"},
-        {"halo", "0"},
-        {"halo_radius_px", "1"}}) {
+  for (const auto& [column, value] : {std::pair("outline_corner_weight", "1"),
+                                      {"ink_spread_mm", ink_mm.c_str()},
+                                      {"edge_shift_blurs", "0"},
+                                      {"outline_shift_blurs", "0"},
+                                      {"halo", "0"},
+                                      {"halo_radius_px", "1"}}) {
     if (columns.count(column) == 0) missing += fmt::format(", {} AS {}", value, column);
   }
   SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation", missing));

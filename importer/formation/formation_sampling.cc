@@ -87,9 +87,8 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
   quad = RefineAndReadAgain(sample.gray, quad, detector.dictionary, detector.border_bits,
                             ImageFormation(), detector.sides_mm)
              .quad;
-  const auto id = static_cast<std::size_t>(quad.marker_id);
-  sample.marker.cells = detector.looks[id].cells;
-  if (detector.sides_mm[id] > 0) sample.marker.side_mm = detector.sides_mm[id];
+  sample.marker =
+      KnownMarkerAt(quad, detector.dictionary, detector.border_bits, detector.sides_mm, nullptr);
   const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.marker.cells});
   if (!aligned) return std::nullopt;
   sample.corners_px = *aligned;

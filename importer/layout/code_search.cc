@@ -163,8 +163,9 @@ VELAMAP_CLONE_FOR_POPCNT bool Anneal(int num_steps, Random* random, Annealing* a
 int MinDistance(const std::vector<Rotations>& codes, int num_bits) {
   int distance = num_bits;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
+    for (std::size_t j = 0; j < i; ++j) {
       distance = std::min(distance, HammingDistance(codes[i], codes[j]));
+    }
   }
   return distance;
 }

@@ -13,6 +13,7 @@
 #include "importer/detect/marker_quad.h"
 #include "importer/layout/dictionary.h"
 #include "importer/pattern/image_formation.h"
+#include "importer/pattern/known_marker.h"
 #include "importer/pattern/refined_corners.h"
 
 namespace velamap {
@@ -23,6 +24,10 @@ struct ReadMarker {
   MarkerQuad quad;
   std::optional<RefinedCorners> refined;
 };
+
+// What is known of a marker with this id at this place; the other arguments as in RefineMarkers().
+KnownMarker KnownMarkerAt(const MarkerQuad& quad, const Dictionary& dictionary, int border_bits,
+                          const std::vector<double>& sides_mm, const Camera* camera);
 
 // `gray`: 8-bit, with dark markers on light paper. The id changes where the cells that the image
 // shows are the code of another marker of the dictionary, and this one fits clearly better.

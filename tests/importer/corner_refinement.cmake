@@ -23,4 +23,5 @@ velamap_test(
     refine/marker_grid.cc
     ../support/render/marker_renderer_test.cc
     ../support/render/picture_effects_test.cc
+    ../support/study/photographed_grid.cc
   LIBRARIES velamap_clip_support)

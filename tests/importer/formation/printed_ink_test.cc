@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
-#include <opencv2/imgproc.hpp>
 
 #include "importer/formation/formation_estimation.h"
 #include "importer/geometry/units.h"
 #include "tests/importer/formation/formation_scenes.h"
 #include "tests/support/clip/clip_scene_builder.h"
-#include "tests/support/render/surface_renderer.h"
+#include "tests/support/study/photographed_grid.h"
 
 namespace velamap {
 namespace {
@@ -51,18 +50,7 @@ MarkerGrid PhotographSheet(double marker_m, double side_px) {
   SurfaceRenderOptions rendering;
   rendering.noise = 1.0;
   rendering.response.tone_curve = ToneCurveKind::kSrgb;
-  MarkerGrid grid;
-  cv::cvtColor(RenderClipFrame(scene, rendering, 0), grid.image, cv::COLOR_BGR2GRAY);
-  for (const ClipMarker& marker : scene.markers) {
-    const auto corners = ProjectCorners(scene, marker, 0);
-    if (!corners) continue;
-    QuadCorners truth = *corners;
-    for (Eigen::Vector2d& x_px : truth) x_px -= Eigen::Vector2d::Constant(0.5);
-    grid.truth.push_back(truth);
-    grid.starts.push_back(truth);
-    grid.cells.push_back(255 * marker.cells);
-  }
-  return grid;
+  return PhotographedGrid(scene, rendering);
 }
 
 struct Sheet {

@@ -7,14 +7,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "importer/geometry/units.h"
 #include "importer/pattern/pattern_picture.h"
 #include "importer/refine/corner_refinement.h"
-#include "tests/importer/refine/marker_grid.h"
 #include "tests/support/clip/clip_scene_builder.h"
-#include "tests/support/render/surface_renderer.h"
+#include "tests/support/study/photographed_grid.h"
 
 namespace velamap {
 namespace {
@@ -100,20 +98,7 @@ MarkerGrid MakeBentGrid(const CornerCase& parameters, std::uint32_t seed) {
   SurfaceRenderOptions rendering;
   rendering.blur_px = parameters.blur_px;
   rendering.noise = parameters.noise;
-  MarkerGrid grid;
-  cv::cvtColor(RenderClipFrame(scene, rendering, 0), grid.image, cv::COLOR_BGR2GRAY);
-  for (const ClipMarker& marker : scene.markers) {
-    const auto corners = ProjectCorners(scene, marker, 0);
-    if (!corners) continue;
-    QuadCorners truth;
-    for (std::size_t i = 0; i < kNumCorners; ++i) {
-      truth[i] = (*corners)[i] - Eigen::Vector2d::Constant(0.5);
-    }
-    grid.truth.push_back(truth);
-    grid.starts.push_back(truth);
-    grid.cells.push_back(255 * marker.cells);
-  }
-  return grid;
+  return PhotographedGrid(scene, rendering);
 }
 
 // Mean variance of a coordinate by the Cramer-Rao bound.
