@@ -10,7 +10,18 @@
 
 #include <gtest/gtest.h>
 
+#include "exporters/formats/mesh_triangles.h"
+#include "exporters/sail/section.h"
+#include "exporters/surface/surface.h"
+#include "importer/detect/detection_options.h"
+#include "importer/layout/code_search.h"
 #include "importer/layout/layout.h"
+#include "importer/print/placement.h"
+#include "importer/print/sheet_plan.h"
+#include "importer/video/video_options.h"
+#include "reconstruct/colmap/bundle_adjustment_options.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/registration/registration_options.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
@@ -137,6 +148,51 @@ Names OptionsIn(const std::string& text) {
   return names;
 }
 
+template <typename Options>
+Names NamesOf() {
+  Options options;
+  Names names;
+  for (const Option& option : DescribeOptions(&options).options) names.insert(option.name);
+  return names;
+}
+
+// By the struct that OptionName(&Struct::member) names.
+const std::map<std::string, Names> kOptionsOfStruct = {
+    {"ArucoDetectionOptions", NamesOf<ArucoDetectionOptions>()},
+    {"BundleAdjustmentOptions", NamesOf<BundleAdjustmentOptions>()},
+    {"CodeSearchOptions", NamesOf<CodeSearchOptions>()},
+    {"GridPlacementOptions", NamesOf<GridPlacementOptions>()},
+    {"MarkerAdjustmentOptions", NamesOf<MarkerAdjustmentOptions>()},
+    {"MeshOptions", NamesOf<MeshOptions>()},
+    {"PrintSheetOptions", NamesOf<PrintSheetOptions>()},
+    {"RegistrationOptions", NamesOf<RegistrationOptions>()},
+    {"SailPlacementOptions", NamesOf<SailPlacementOptions>()},
+    {"SectionOptions", NamesOf<SectionOptions>()},
+    {"SurfaceOptions", NamesOf<SurfaceOptions>()},
+    {"VideoOptions", NamesOf<VideoOptions>()},
+};
+
+// The option of a member has its name, without a section, and at most lacks its unit.
+std::string OptionOfMember(const std::string& type, const std::string& member) {
+  const auto options = kOptionsOfStruct.find(type);
+  if (options == kOptionsOfStruct.end()) return type + " in kOptionsOfStruct";
+  for (const std::string& name : options->second) {
+    const std::string last = name.substr(name.find('.') + 1);
+    if (member == last || member.rfind(last + "_", 0) == 0) return name;
+  }
+  return type + "::" + member;
+}
+
+// Names of options in a line of code that OptionName() makes.
+Names OptionsByMember(const std::string& line) {
+  static const std::regex call(R"(OptionName\(&(\w+)::(\w+)\))");
+  Names names;
+  for (std::sregex_iterator it(line.begin(), line.end(), call), end; it != end; ++it) {
+    names.insert(OptionOfMember((*it)[1].str(), (*it)[2].str()));
+  }
+  return names;
+}
+
 // `velamap COMMAND --option` in a text advises another command.
 void TakeAdvisedCommand(const std::string& text, Names* commands) {
   static const std::regex advice("velamap ([a-z_]+) --");
@@ -161,7 +217,9 @@ TEST(OptionMessages, NameNoOptionThatTheCommandDoesNotHave) {
         Names commands = CommandsOf(path, options);
         TakeAdvisedCommand(before + text, &commands);
         before = text.empty() ? "" : text.substr(0, text.size() - 1);
-        for (const std::string& name : OptionsIn(text)) {
+        Names names = OptionsIn(text);
+        names.merge(OptionsByMember(line));
+        for (const std::string& name : names) {
           const auto colmap = kOptionsOfColmap.find(path);
           if (colmap != kOptionsOfColmap.end() && colmap->second.count(name) > 0) continue;
           ++num_names;
