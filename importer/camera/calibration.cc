@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/camera/storage_reader.h"
 #include "importer/text/text_file.h"
@@ -247,6 +248,13 @@ Camera ReadCalibration(const std::string& path) {
   const Camera camera =
       storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);
   CheckRangeOfParams(camera, path);
+  if (!HasMonotonicDistortion(camera)) {
+    LogWarning(
+        "{}: the distortion folds over inside the picture, so that two directions share one pixel; "
+        "markers near the border come out wrong: calibrate again with the board in the corners of "
+        "the picture, or with fewer distortion coefficients",
+        path);
+  }
   return camera;
 }
 

@@ -16,7 +16,8 @@ namespace velamap {
 // with k3..k6, or OPENCV_FISHEYE. OpenCV's principal point is relative to the centre of the first
 // pixel, COLMAP's to its corner; the 0.5 px between them are added here and nowhere else.
 //
-// Throws InputError that names the file, the key or line, and what was expected.
+// Warns of a distortion that folds over inside the picture (HasMonotonicDistortion()). Throws
+// InputError that names the file, the key or line, and what was expected.
 Camera ReadCalibration(const std::string& path);
 
 // Whether images of this size have the camera's aspect ratio, to half a pixel, so that scaling

@@ -9,6 +9,7 @@ namespace velamap {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::vector<std::string> kSail = {"shoot_planner",
                                         "--field_of_view",
@@ -42,6 +43,18 @@ TEST(ShootPlannerTest, WritesTheSamePlanTwice) {
   const ProgramRun second = RunWith(kSail, {"--output_path", folder, "--hull_markers", "4"});
   EXPECT_EQ(first.out, second.out);
   EXPECT_EQ(svg, ReadFileBytes(folder + "/plan.svg"));
+}
+
+TEST(ShootPlannerTest, ACalibrationThatFoldsOverIsAWarning) {
+  const TempDir dir;
+  const std::string camera_path = (dir / "cameras.txt").string();
+  const auto run_with_distortion = [&](const std::string& k1) {
+    WriteTextFile(camera_path, "1 OPENCV 1920 1080 1400 1400 960 540 " + k1 + " 0 0 0\n");
+    return RunVelamap({"shoot_planner", "--camera_path", camera_path, "--marker_length", "0.1"});
+  };
+  const std::string warning = "cameras.txt: the distortion folds over";
+  EXPECT_THAT(run_with_distortion("-0.9").err, HasSubstr(warning));
+  EXPECT_THAT(run_with_distortion("-0.1").err, Not(HasSubstr(warning)));
 }
 
 TEST(ShootPlannerTest, InputThatMakesNoPlanIsNamed) {
