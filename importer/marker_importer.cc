@@ -18,6 +18,7 @@
 #include "importer/database/database_writer.h"
 #include "importer/database/tracking_table.h"
 #include "importer/formation/formation_sampling.h"
+#include "importer/frame_camera.h"
 #include "importer/frame_pipeline.h"
 #include "importer/import_anew.h"
 #include "importer/import_checks.h"
@@ -42,10 +43,13 @@ FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameD
                               const ImportProgress& progress, ColmapDatabase* database,
                               BusyTime* time) {
   if (const auto known = database->ReadFormation()) return *known;
+  const auto camera_of = [&](const Frame& frame) {
+    return CameraOfFrame(options, !IsFolder(options.image_path), frame);
+  };
   const ProcessTimer timer;
   const FormationEstimate estimate =
       EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector,
-                                {progress.sampling, progress.formation});
+                                camera_of, {progress.sampling, progress.formation});
   database->WriteFormation(estimate);
   TakeStageTimes();  // drops what the search for samples charged to other stages
   *time = timer.Elapsed();

@@ -86,6 +86,8 @@ bool IsClipped(const FittedSample& sample, const SamplePlace& place) {
 
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation) {
+  // Beyond what blur, sharpening and halo reach, pixels of large markers tell nothing.
+  constexpr float kReachOfEdgesPx = 16.0f;
   FittedSample fitted;
   fitted.gray = sample.gray;
   auto problem =
@@ -99,7 +101,10 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
     for (int x = 0; x < fitted.problem.box.width; ++x) {
       const Floats from_center_x = AllLanes(fitted.problem.box.x + x - center.x());
       const Floats from_center_y = AllLanes(fitted.problem.box.y + y - center.y());
-      if (!picture.Covers(from_center_x, from_center_y)[0]) continue;
+      if (!picture.Covers(from_center_x, from_center_y)[0] ||
+          !picture.IsNearEdge(from_center_x, from_center_y, kReachOfEdgesPx)[0]) {
+        continue;
+      }
       const bool is_at_corner = picture.IsAtOutlineCorner(from_center_x, from_center_y)[0] != 0;
       fitted.places.push_back({{x, y}, is_at_corner});
     }

@@ -31,7 +31,7 @@ struct FittedSample {
   cv::Rect patch_box;
   PatternProblem problem;
   PatternMinimum minimum;
-  std::vector<SamplePlace> places;  // of all pixels that the model covers
+  std::vector<SamplePlace> places;  // of the pixels near edges
   std::vector<float> residuals;     // at these places; empty: the fit failed
 };
 

@@ -73,33 +73,53 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
   return chosen;
 }
 
+// Leaves out the largest samples beyond a total of kMaxPixels, because the estimate holds all
+// samples many times over.
+void LimitPixels(std::vector<FormationSample>* samples) {
+  constexpr std::size_t kMaxPixels = 6'000'000, kAlways = 4;
+  std::stable_sort(samples->begin(), samples->end(),
+                   [](const FormationSample& a, const FormationSample& b) {
+                     return a.gray.total() < b.gray.total();
+                   });
+  std::size_t num_pixels = 0, num_kept = 0;
+  for (const FormationSample& sample : *samples) {
+    num_pixels += sample.gray.total();
+    if (num_kept >= kAlways && num_pixels > kMaxPixels) break;
+    ++num_kept;
+  }
+  samples->resize(num_kept);
+}
+
 // Returns the marker with its surroundings; nothing if its sides are not found. Its code is read
 // again, because a misread code would imply edges that are not there.
-std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv::Mat& gray,
-                                         const MarkerQuad& found) {
+std::optional<FormationSample> CutSample(const FrameDetector& detector, const Camera& camera,
+                                         const cv::Mat& gray, const MarkerQuad& found) {
   const cv::Rect cut = PixelsAround(BoundingBox(found.corners_px), gray.size(),
                                     SampleReachPx(QuadMeanSide(found.corners_px)));
   FormationSample sample;
   sample.gray = gray(cut).clone();
   if (detector.options.inverted) cv::bitwise_not(sample.gray, sample.gray);
+  const Eigen::Vector2d offset_px(cut.x, cut.y);
   MarkerQuad quad = found;
-  for (Eigen::Vector2d& corner : quad.corners_px) corner -= Eigen::Vector2d(cut.x, cut.y);
+  for (Eigen::Vector2d& corner_px : quad.corners_px) corner_px -= offset_px;
   quad = RefineAndReadAgain(sample.gray, quad, detector.dictionary, detector.border_bits,
                             ImageFormation(), detector.sides_mm)
              .quad;
-  sample.marker =
-      KnownMarkerAt(quad, detector.dictionary, detector.border_bits, detector.sides_mm, nullptr);
+  MarkerQuad in_frame = quad;
+  for (Eigen::Vector2d& corner_px : in_frame.corners_px) corner_px += offset_px;
+  sample.marker = KnownMarkerAt(in_frame, detector.dictionary, detector.border_bits,
+                                detector.sides_mm, &camera);
   const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.marker.cells});
   if (!aligned) return std::nullopt;
   sample.corners_px = *aligned;
   return sample;
 }
 
-std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv::Mat& gray,
-                                        const SampleQuota& quota) {
+std::vector<FormationSample> CutSamples(const FrameDetector& detector, const Camera& camera,
+                                        const cv::Mat& gray, const SampleQuota& quota) {
   std::vector<FormationSample> samples;
   for (const MarkerQuad& quad : ChooseMarkers(detector, quota, SearchInFrame(detector, gray))) {
-    auto sample = CutSample(detector, gray, quad);
+    auto sample = CutSample(detector, camera, gray, quad);
     if (sample) samples.push_back(std::move(*sample));
   }
   return samples;
@@ -108,6 +128,7 @@ std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv:
 // Where samples come from.
 struct SampledSource {
   const FrameDetector& detector;
+  const std::function<Camera(const Frame&)>& camera_of;
   int num_threads;
   std::function<void()> count;  // called after each frame; may be empty
   FrameSource* frames;
@@ -142,7 +163,7 @@ bool SampleFrames(const SampledSource& source, int num_frames, int stride, const
     Frame frame = std::move(frames[i]);
     std::string reason;
     if (source.frames->Load(&frame, &reason)) {
-      samples_of[i] = CutSamples(source.detector, frame.gray, quota);
+      samples_of[i] = CutSamples(source.detector, source.camera_of(frame), frame.gray, quota);
     }
     if (source.count) source.count();
   });
@@ -186,16 +207,18 @@ std::vector<FormationSample> SamplePhotographs(const SampledSource& source) {
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector,
+                                            const std::function<Camera(const Frame&)>& camera_of,
                                             const FormationProgress& progress) {
   // May take longer than the detection in a few photographs.
   LogInfo("looking for markers that show what camera and print do to edges");
   const std::unique_ptr<FrameSource> frames = OpenFrameSource(image_path, video, {}, num_threads);
   const int stride = StrideOfPhotographs(frames->NumFrames());
   const int num_sampled = frames->IsVideo() ? 0 : (frames->NumFrames() + stride - 1) / stride;
-  const SampledSource source{detector, num_threads, Counter(progress.frames, num_sampled),
-                             frames.get()};
+  const SampledSource source{detector, camera_of, num_threads,
+                             Counter(progress.frames, num_sampled), frames.get()};
   std::vector<FormationSample> samples =
       frames->IsVideo() ? SampleVideo(source) : SamplePhotographs(source);
+  LimitPixels(&samples);
   // Sums in single precision depend on their order, which the names of photographs decide.
   const auto key = [](const FormationSample& sample) {
     return std::make_pair(cv::sum(sample.gray)[0], sample.corners_px[0].sum());
