@@ -12,6 +12,7 @@
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/camera/camera_steadiness.h"
+#include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/camera_search.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/register_frames.h"
@@ -174,7 +175,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   for (const std::size_t idx : ChooseBoardViews(views, grid, options.max_num_views)) {
     calibration.views.push_back({views[idx]});
   }
-  const std::vector<DatabaseImage> used = ChosenImages(images, calibration.views);
+  std::vector<DatabaseImage> used = ChosenImages(images, calibration.views);
   LogInfo("{} of {} pictures that show the board are chosen", used.size(), images.size());
   // Takes all images and not only the selected ones, because the velocity of a corner follows from
   // the neighbouring frames.
@@ -184,6 +185,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   registration_options.has_calibration = false;
   const std::map<CameraId, Camera> cameras =
       FindCameras(used, guesses, layout, corner_errors, registration_options, adjustment);
+  CorrectForLensBend(cameras, &used);
   const Registration registration = RegisterFrames(used, cameras, layout, registration_options);
   const Model seed = MakeSeedModel(registration, used, cameras);
   CalibrationAdjustment adjusted =

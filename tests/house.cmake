@@ -51,11 +51,11 @@ house_folder(reconstruct/model PUBLIC
   adjustment_uncertainty calibration_evidence gauge model model_io reprojection turned_model
   weak_geometry)
 house_folder(reconstruct/camera PUBLIC
-  camera_steadiness focal_evidence)
+  camera_steadiness focal_evidence lens_bend_correction)
 house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
-  dictionary_doubt frame_order registration registration_options repeated_frames)
+  corner_motions dictionary_doubt frame_order registration registration_options)
 house_folder(reconstruct/evidence PUBLIC
   layout_evidence marker_rows unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC
@@ -67,8 +67,9 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
-  marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions scale_bar)
+  corner_errors corner_residuals error_correlation marker_adjustment_options
+  marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions
+  rolling_shutter scale_bar)
 house_folder(reconstruct/sizes PUBLIC
   marker_sizes)
 house_folder(reconstruct/adjust PUBLIC

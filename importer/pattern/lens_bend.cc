@@ -1,5 +1,6 @@
 #include "importer/pattern/lens_bend.h"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 #include "importer/geometry/unit_square_map.h"
@@ -65,6 +66,31 @@ LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
     return {};
   }
   return {displacements_px * kByDisplacements.transpose()};
+}
+
+// The fit follows c0 and c3 with a hump and the other terms in the least-squares sense. An edge
+// shows only what displaces it across. For edges along u, with s = 2v - 1 and t = 2u - 1, the mean
+// over the outline (|s| = 1) and half of the inner edges of 6 x 6 cells (|s| and |t| <= 2/3) turns
+//
+//   s h(u) into 0.696 s,  s h(v) into 0.097 s,  t h(u) into 0.490 t,  t h(v) into 0.210 t,
+//
+// and the same holds for edges along v with u and v exchanged.
+QuadCorners CornerShiftsByBend(const LensBend& bend, const QuadCorners& corners_px) {
+  constexpr double kSByU = 0.696, kSByV = 0.097, kTByU = 0.490, kTByV = 0.210;
+  const auto& c = bend.coefficients_px;
+  Eigen::Matrix2d sides_px;  // along u and v
+  sides_px.col(0) = corners_px[1] - corners_px[0] + corners_px[2] - corners_px[3];
+  sides_px.col(1) = corners_px[3] - corners_px[0] + corners_px[2] - corners_px[1];
+  const Eigen::Matrix2d by_sides = sides_px.inverse();
+  // What displaces edges along u across is the part along v, and vice versa.
+  const auto across = [&](int side, const Eigen::Vector2d& shift_px) -> Eigen::Vector2d {
+    return sides_px.col(side) * by_sides.row(side).dot(shift_px);
+  };
+  const Eigen::Vector2d by_s = across(1, kSByU * c.col(1) + kSByV * c.col(5)) +
+                               across(0, kTByU * c.col(5) + kTByV * c.col(1));
+  const Eigen::Vector2d by_t = across(1, kTByU * c.col(2) + kTByV * c.col(4)) +
+                               across(0, kSByU * c.col(4) + kSByV * c.col(2));
+  return {-by_s - by_t, -by_s + by_t, by_s + by_t, by_s - by_t};
 }
 
 }  // namespace velamap

@@ -18,8 +18,8 @@
 #include "importer/geometry/pose_step.h"
 #include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/model/reprojection.h"
-#include "reconstruct/problem/corner_velocities.h"
 #include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/problem/rolling_shutter.h"
 
 namespace velamap {
 namespace {
@@ -111,8 +111,7 @@ MarkerSolution Without(const MarkerSolution& all, const std::vector<int>& groups
 
 Model InMiddleRow(const MarkerSolution& solution) {
   Model model = solution.model;
-  MoveToMiddleRow(solution.state.rolling_shutter_s, solution.corner_errors->velocities_px_s,
-                  &model);
+  MoveToMiddleRow(solution.state.rolling_shutter_s, solution.corner_errors->motions, &model);
   return model;
 }
 

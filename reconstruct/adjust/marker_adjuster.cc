@@ -24,8 +24,8 @@
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
 #include "reconstruct/problem/corner_residuals.h"
-#include "reconstruct/problem/corner_velocities.h"
 #include "reconstruct/problem/marker_uncertainty.h"
+#include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/sizes/marker_sizes.h"
 
 namespace velamap {
@@ -144,10 +144,8 @@ std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
 }
 
 void MarkerAdjuster::WidenCameraSigmas() {
-  // Finish() has moved the image points to the middle row; the fits need them as recorded.
   MarkerSolution as_recorded = solution_;
-  MoveFromMiddleRow(solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
-                    &as_recorded.model);
+  as_recorded.model = as_recorded_;
   for (auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
     EstimatedCamera& found = summary_.cameras.at(camera_id);
     AddInset(solution_.weights.inset_as_scale, found.camera, &sigmas);
@@ -230,7 +228,8 @@ void MarkerAdjuster::Finish() {
       LostScaleBars(solution_.weights.scale_bars, linearization->state);
   solution_.warnings.insert(solution_.warnings.end(), lost.begin(), lost.end());
   WarnOfSlowShutter(summary_.uncertainty, &solution_);
-  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
+  if (solution_.options.find_camera) as_recorded_ = solution_.model;
+  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
                   &solution_.model);
   if (solution_.options.find_camera) {
     summary_.cameras = CamerasOf(solution_.model, *linearization);

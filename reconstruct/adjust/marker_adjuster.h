@@ -83,6 +83,9 @@ class MarkerAdjuster {
   std::size_t num_images_before_;
   std::string part_disagreement_;  // beginning of a warning; empty if parts agree
   MarkerAdjustmentSummary summary_;
+  // With find_camera, after Finish(): the model whose image points are not yet corrected for the
+  // rolling shutter.
+  Model as_recorded_;
 };
 
 }  // namespace velamap

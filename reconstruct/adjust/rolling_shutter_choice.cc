@@ -8,6 +8,7 @@
 #include "importer/base/error.h"
 #include "importer/base/log.h"
 #include "reconstruct/adjust/corner_calibration.h"
+#include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
@@ -17,6 +18,17 @@ namespace {
 // time.
 constexpr double kFastest_s = 1e-3;
 
+// Corners that fitted as long as the motion was part of the errors.
+void RemoveTrialOutliers(MarkerSolution* trial) {
+  std::vector<RemovedObservation> removed;
+  std::vector<ImageId> removed_images;
+  RemoveOutliers(ResidualsOfModel(trial->model, *trial), trial->options.outlier_sigmas,
+                 &trial->model, &removed);
+  if (removed.empty()) return;
+  RemoveUnderconstrained(trial->options.min_track_length, &trial->model, &removed_images);
+  Minimize(1e-4, trial);
+}
+
 // Whether a trial with that time as a parameter determines it. Throws DataError where the trial
 // fails.
 bool IsDetermined(MarkerSolution trial) {
@@ -25,6 +37,7 @@ bool IsDetermined(MarkerSolution trial) {
   // The sigmas of the corners still contain the motion.
   CalibrateRobustly(&trial);
   Minimize(1e-4, &trial);
+  RemoveTrialOutliers(&trial);
   const auto linearization = Linearize(trial);
   const MarkerState& state = linearization->state;
   const double variance = GlobalCovariance(linearization->problem, linearization->covariance,
@@ -43,7 +56,7 @@ bool IsDetermined(MarkerSolution trial) {
 bool ShowsRollingShutter(const MarkerSolution& solution) {
   const MarkerAdjustmentOptions& options = solution.options;
   if (!options.estimate_rolling_shutter || options.rolling_shutter_s != 0) return false;
-  if (solution.corner_errors->velocities_px_s.empty()) return false;
+  if (solution.corner_errors->motions.empty()) return false;
   try {
     return IsDetermined(solution);
   } catch (const DataError& error) {

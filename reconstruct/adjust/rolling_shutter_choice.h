@@ -10,7 +10,7 @@ namespace velamap {
 // Tries the time from the first row to the last as a parameter of a solution that holds it. Returns
 // true if the square of the estimate over its sigma, which contains the correlation of errors,
 // exceeds the Bayesian information criterion (Schwarz 1978) for one parameter, and if the time is
-// at least as long as sensors take. Returns false without velocities of the corners, without
+// at least as long as sensors take. Returns false without motions of the corners, without
 // estimate_rolling_shutter, where the option gives the time, and where the trial fails.
 bool ShowsRollingShutter(const MarkerSolution& solution);
 

@@ -13,7 +13,7 @@ CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
   constexpr double kInsetWithoutEstimate_px = 0.01;
   const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
   CornerErrors errors;
-  errors.velocities_px_s = CornerVelocitiesOf(images);
+  errors.motions = CornerMotionsOf(images);
   errors.common_inset_px = formation ? formation->inset_sigma_px : kInsetWithoutEstimate_px;
   for (const DatabaseImage& image : images) {
     std::vector<double>& sigmas_px = errors.sigmas_px[image.image_id];

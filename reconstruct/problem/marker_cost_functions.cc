@@ -49,8 +49,11 @@ struct ViewParameters {
   }
   // What is added to the projection of a corner to give its residual.
   Eigen::Vector2d OffsetPx(const CornerObservation& corner) const {
-    return inset_px * corner.inset_direction + rolling_shutter_s * corner.shutter_direction_px_s -
-           corner.x_in_image_px;
+    return inset_px * corner.inset_direction + Shift(corner).value_px - corner.x_in_image_px;
+  }
+
+  RowShift Shift(const CornerObservation& corner) const {
+    return ShiftByRow(corner.motion, rolling_shutter_s);
   }
 
   const double* marker;
@@ -80,7 +83,7 @@ void SetDerivatives(const ViewParameters& view, const CornerObservation& corner,
   }
   if (by_inset.rows() > 0) by_inset.block<2, 1>(row, 0) = by_image * corner.inset_direction;
   if (by_shutter.rows() > 0) {
-    by_shutter.block<2, 1>(row, 0) = by_image * corner.shutter_direction_px_s;
+    by_shutter.block<2, 1>(row, 0) = by_image * view.Shift(corner).by_shutter_px_s;
   }
 }
 

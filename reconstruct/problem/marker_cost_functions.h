@@ -22,6 +22,7 @@
 #include <Eigen/Core>
 
 #include "importer/camera/camera.h"
+#include "reconstruct/problem/rolling_shutter.h"
 
 namespace velamap {
 
@@ -34,9 +35,7 @@ struct CornerObservation {
   // image that point from the corner along its two sides. The sides of a square seen straight on
   // shrink by twice the inset. Zero where a neighbouring corner is unknown.
   Eigen::Vector2d inset_direction = Eigen::Vector2d::Zero();
-  // ShutterDirection(): the movement of the corner from when the middle row is read to when its own
-  // row is, if the frame takes one second from the first row to the last.
-  Eigen::Vector2d shutter_direction_px_s = Eigen::Vector2d::Zero();
+  RowMotion motion;
 };
 
 // The corner in a slot of a marker block.

@@ -95,11 +95,11 @@ class ProblemBuilder {
   void AddCorners(const CornerErrors& corner_errors) {
     std::unordered_map<ImageId, std::size_t> image_idxs;
     std::vector<const std::vector<double>*> sigmas;
-    std::vector<const std::vector<Eigen::Vector2d>*> velocities;
+    std::vector<const std::vector<CornerMotion>*> motions;
     for (const ImageBlock& image : state_.images) {
       image_idxs[image.image_id] = sigmas.size();
       sigmas.push_back(Find(corner_errors.sigmas_px, image.image_id));
-      velocities.push_back(Find(corner_errors.velocities_px_s, image.image_id));
+      motions.push_back(Find(corner_errors.motions, image.image_id));
     }
     std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
     for (MarkerBlock& marker : state_.markers) {
@@ -112,7 +112,7 @@ class ProblemBuilder {
       }
       for (std::size_t image_idx = 0; image_idx < views.size(); ++image_idx) {
         if (views[image_idx].empty()) continue;
-        AddView(image_idx, views[image_idx], sigmas[image_idx], velocities[image_idx], &marker);
+        AddView(image_idx, views[image_idx], sigmas[image_idx], motions[image_idx], &marker);
         views[image_idx].clear();
       }
     }
@@ -200,8 +200,8 @@ class ProblemBuilder {
   }
 
   void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
-               const std::vector<double>* sigmas_px,
-               const std::vector<Eigen::Vector2d>* velocities_px_s, MarkerBlock* marker) {
+               const std::vector<double>* sigmas_px, const std::vector<CornerMotion>* motions,
+               MarkerBlock* marker) {
     ImageBlock& block = state_.images[image_idx];
     const ModelImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
@@ -216,9 +216,9 @@ class ProblemBuilder {
       if (EstimatesInset()) {
         observation.inset_direction = InsetDirection(camera, image.cam_from_world, *marker, slot);
       }
-      if (velocities_px_s != nullptr) {
-        observation.shutter_direction_px_s = ShutterDirection(
-            camera, observation.x_in_image_px, velocities_px_s->at(element.point2D_idx));
+      if (motions != nullptr) {
+        observation.motion =
+            RowMotionOf(camera, observation.x_in_image_px, motions->at(element.point2D_idx));
       }
       result_.corners.emplace_back(point3D_id, element);
       result_.corner_sigmas_px.push_back(observation.sigma_px);

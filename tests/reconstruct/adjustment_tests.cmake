@@ -10,7 +10,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     adjust/marker_adjustment_test.cc
     adjust/common_inset_test.cc
     adjust/rolling_shutter_test.cc
-    problem/corner_velocities_test.cc
+    problem/rolling_shutter_test.cc
     problem/marker_cost_functions_test.cc
     problem/marker_problem_test.cc
     sizes/few_markers_test.cc

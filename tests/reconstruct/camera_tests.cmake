@@ -11,6 +11,7 @@ velamap_test(NAME reconstruct_camera_test LABEL unit
     adjust/found_cameras_test.cc
     camera/camera_steadiness_test.cc
     camera/focal_evidence_test.cc
+    camera/lens_bend_correction_test.cc
     model/turned_model_test.cc
     scene_model.cc
 )

@@ -24,6 +24,7 @@ velamap_test(NAME reconstruct_global_test LABEL unit
     map/map_verdict_test.cc
     registration/camera_doubt_test.cc
     registration/dictionary_doubt_test.cc
+    registration/corner_motions_test.cc
     registration/repeated_frames_test.cc
     map/marker_rivals_test.cc
     map/scene_map.cc

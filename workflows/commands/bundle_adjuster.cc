@@ -8,6 +8,7 @@
 #include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
 #include "importer/text/write_formatted.h"
+#include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
@@ -61,8 +62,8 @@ void Validate(BundleAdjusterCommandOptions* options) {
   options->adjustment.Complete(options->general.num_threads);
 }
 
-// Takes the image points of the model from the database, because an earlier adjustment may have
-// removed a rolling shutter from them.
+// Takes the image points of the model from the images of the database, because an earlier
+// adjustment may have removed a rolling shutter from them.
 void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOptions& paths,
                       Model* model) {
   std::map<ImageId, const FrameDetections*> detections;
@@ -91,7 +92,8 @@ CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layo
   }
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
   CheckLayoutOfDatabase(database, options.paths.database_path, layout);
-  const std::vector<DatabaseImage> images = database.ReadImages();
+  std::vector<DatabaseImage> images = database.ReadImages();
+  if (!database.HasCalibration()) CorrectForLensBend(model->cameras, &images);
   RestoreKeypoints(images, options.paths, model);
   if (!database.HasCalibration() && !adjustment->markers.find_camera) {
     RefuseFixedCameraWithoutCalibration(options.typed, adjustment->markers,
@@ -106,7 +108,7 @@ void RefuseOptionsWithoutData(const BundleAdjusterCommandOptions& options,
                               const AdjustmentOptions& adjustment,
                               const CornerErrors& corner_errors) {
   if (adjustment.markers.find_camera) RefuseOptionsOfKnownCamera(options.typed);
-  if (corner_errors.velocities_px_s.empty()) {
+  if (corner_errors.motions.empty()) {
     RefuseOptionsWithoutEffect(
         options.typed,
         {"MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"},

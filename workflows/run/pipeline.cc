@@ -10,6 +10,7 @@
 #include "importer/base/log.h"
 #include "importer/base/numbers.h"
 #include "importer/track/frame_detector.h"
+#include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/evidence/unnamed_markers.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/frame_selection.h"
@@ -148,12 +149,13 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
                             const MarkerAdjustmentOptions& adjustment) {
   const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
   CheckLayoutOfDatabase(database, database_path, layout);
-  const std::vector<DatabaseImage> images = database.ReadImages();
+  std::vector<DatabaseImage> images = database.ReadImages();
   std::map<CameraId, Camera> cameras = database.ReadCameras();
   SeedResult seed;
   seed.corner_errors = CornerErrorsOf(images, database.ReadFormation());
   if (!database.HasCalibration()) {
     cameras = FindUnknownCameras(images, cameras, layout, seed.corner_errors, options, adjustment);
+    CorrectForLensBend(cameras, &images);
   }
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
     seed.image_names.push_back(name);

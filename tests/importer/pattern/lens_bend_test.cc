@@ -59,7 +59,8 @@ TEST(FitPattern, ALensThatBendsMarkersMovesNoSide) {
     options.camera = camera;
     options.rendering.noise_sigma = 1.0;
     const MarkerGrid grid = MakeMarkerGrid(options);
-    double with_px = 0.0, without_px = 0.0;
+    double with_px = 0.0, without_px = 0.0, corrected_px = 0.0;
+    double squares_without = 0.0, squares_corrected = 0.0;
     int count = 0;
     for (std::size_t k = 0; k < grid.truth.size(); ++k) {
       KnownMarker marker{grid.cells[k]};
@@ -70,13 +71,24 @@ TEST(FitPattern, ALensThatBendsMarkersMovesNoSide) {
       const double truth_px = QuadMeanSide(grid.truth[k]);
       with_px += QuadMeanSide(with->corners_px) - truth_px;
       without_px += QuadMeanSide(without->corners_px) - truth_px;
+      QuadCorners corrected = without->corners_px;
+      const QuadCorners shifts_px = CornerShiftsByBend(BendByLens(camera, corrected), corrected);
+      for (std::size_t i = 0; i < kNumCorners; ++i) corrected[i] -= shifts_px[i];
+      corrected_px += QuadMeanSide(corrected) - truth_px;
+      for (std::size_t i = 0; i < kNumCorners; ++i) {
+        squares_without += (without->corners_px[i] - grid.truth[k][i]).squaredNorm();
+        squares_corrected += (corrected[i] - grid.truth[k][i]).squaredNorm();
+      }
       ++count;
     }
     ASSERT_GT(count, 10);
     EXPECT_LT(std::abs(with_px / count), 0.01);
     EXPECT_GT(without_px / count, 0.02);
-    RecordProperty("bias_px",
-                   std::to_string(with_px / count) + " " + std::to_string(without_px / count));
+    EXPECT_LT(std::abs(corrected_px / count), 0.005);
+    EXPECT_LT(squares_corrected, 0.3 * squares_without);
+    RecordProperty("bias_px", std::to_string(with_px / count) + " " +
+                                  std::to_string(without_px / count) + " " +
+                                  std::to_string(corrected_px / count));
   }
 }
 

@@ -336,7 +336,7 @@ TEST(CornerErrorsOf, FollowsTheKeypointsAndDoubtsFallbacks) {
   formation.inset_sigma_px = 0.02;
   const CornerErrors errors = CornerErrorsOf({image}, formation);
   EXPECT_EQ(errors.common_inset_px, 0.02);
-  EXPECT_THAT(errors.velocities_px_s, IsEmpty());
+  EXPECT_THAT(errors.motions, IsEmpty());
   const double fallback = 5 * MarkerAdjustmentOptions{}.corner_sigma_px;
   EXPECT_THAT(errors.sigmas_px.at(3),
               ElementsAre(0.1, 0.2, 0.3, 0.4, fallback, fallback, fallback, fallback));

@@ -5,6 +5,7 @@
 
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/geometry/covariance_update.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
 
@@ -15,8 +16,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-constexpr double kFrame_s = 1.0 / 30;
 
 // Velocity of the camera frame.
 struct Motion {
@@ -48,6 +47,15 @@ class RollingShutter : public testing::Test {
       motions_.push_back({draw(0.3), draw(0.2)});
   }
 
+  // How long the motion of a frame would have taken at its velocity to get where it is `time_s`
+  // after the frame.
+  double MotionTime_s(std::size_t frame_idx, double time_s) const {
+    if (shake_Hz_ == 0) return time_s;
+    const double turn_rad_s = 2 * 3.14159265358979 * shake_Hz_;
+    const double phase = static_cast<double>(frame_idx);
+    return (std::sin(turn_rad_s * time_s + phase) - std::sin(phase)) / turn_rad_s;
+  }
+
   // How far the cloth is from its mean shape in a frame, in waves that differ between frames.
   Eigen::Vector3d Flap(std::size_t frame_idx, const Eigen::Vector3d& x_in_world) const {
     if (flaps_m_.empty()) return Eigen::Vector3d::Zero();
@@ -72,7 +80,7 @@ class RollingShutter : public testing::Test {
                                  ? x_px.y() / scene_.camera.height_px - 0.5
                                  : x_px.x() / scene_.camera.width_px - 0.5;
           x_px = ImageFromCam(scene_.camera,
-                              x + (time_s + rolling_shutter_s * row) *
+                              x + MotionTime_s(frame_idx, time_s + rolling_shutter_s * row) *
                                       (motion.linear_m_s + motion.angular_rad_s.cross(x)))
                      .value();
         }
@@ -91,10 +99,12 @@ class RollingShutter : public testing::Test {
     }
     if (noise_px > 0) AddNoise({noise_px, 0, 0, 0, seed}, &film);
     for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
-      const auto beside_id = static_cast<ImageId>(100 + 2 * i);
-      images.push_back({beside_id, 1, Detections(i, -kFrame_s, rolling_shutter_s)});
       images.push_back({static_cast<ImageId>(i + 1), 1, film.frames[i]});
-      images.push_back({beside_id + 1, 1, Detections(i, kFrame_s, rolling_shutter_s)});
+      for (int step = -reach_; step <= reach_; ++step) {
+        if (step == 0) continue;
+        images.push_back({static_cast<ImageId>(100 + images.size()), 1,
+                          Detections(i, step * frame_s_, rolling_shutter_s)});
+      }
     }
     model_ = MakeSceneModel(film);
     corner_errors_ = CornerErrorsOf(images);
@@ -107,6 +117,9 @@ class RollingShutter : public testing::Test {
   SyntheticScene scene_;
   Model truth_;
   std::vector<Motion> motions_;
+  double shake_Hz_ = 0.0;  // of the motions, which are uniform without
+  double frame_s_ = 1.0 / 30;
+  int reach_ = 1;                         // number of frames before and after each of the model's
   std::vector<Eigen::Vector3d> flaps_m_;  // empty: the cloth is still
   Model model_;
   CornerErrors corner_errors_;
@@ -130,6 +143,29 @@ TEST_F(RollingShutter, IsFoundInEitherDirectionAndTakenOut) {
     EXPECT_THAT(summary.warnings, IsEmpty());
     EXPECT_EQ(without.uncertainty.rolling_shutter_sigma_s, 0);
   }
+}
+
+// The velocity changes by a sixth while a frame is read.
+TEST_F(RollingShutter, IsFoundInAFastShake) {
+  constexpr double kShutter_s = 0.0144;
+  Stage({}, 20);
+  for (Motion& motion : motions_) {
+    motion.linear_m_s *= 5;
+    motion.angular_rad_s *= 2;
+  }
+  shake_Hz_ = 4;
+  frame_s_ = 1.0 / 60;
+  reach_ = 2;
+  Film(kShutter_s, 0.02, 1);
+  const auto summary = Adjust();
+  const AdjustmentUncertainty& found = summary.uncertainty;
+  EXPECT_NEAR(found.rolling_shutter_s, kShutter_s, 3 * found.rolling_shutter_sigma_s);
+  EXPECT_LT(found.rolling_shutter_sigma_s, 0.01 * kShutter_s);
+  const double sigma_m =
+      std::sqrt(Trace(found.points) / static_cast<double>(found.points.point3D_ids.size()));
+  EXPECT_LT(MaxPointError(model_, truth_), 3 * sigma_m);
+  EXPECT_LT(summary.error_after_px.mean, 0.03);
+  EXPECT_THAT(summary.warnings, IsEmpty());
 }
 
 TEST_F(RollingShutter, SigmaContainsTheMotionOfTheCloth) {
@@ -190,7 +226,7 @@ TEST_F(RollingShutter, IsNotFoundInFramesThatAreTakenAtOnce) {
 
 TEST_F(RollingShutter, IsNotLookedForWithoutFramesBeside) {
   Film(0.02, 0.05, 1);
-  corner_errors_.velocities_px_s.clear();
+  corner_errors_.motions.clear();
   EXPECT_EQ(Adjust().uncertainty.rolling_shutter_sigma_s, 0);
 }
 

@@ -70,7 +70,9 @@ std::vector<CornerObservation> Observations(const std::vector<int>& slots) {
     observation.x_in_image_px = {1200 + 40.0 * (slot == 1 || slot == 2), 380 - 35.0 * (slot > 1)};
     observation.sigma_px = 30.0 + slot;  // so that the loss is at work, but not all there is
     observation.inset_direction = Eigen::Vector2d(0.8, -0.5 + 0.1 * slot);
-    observation.shutter_direction_px_s = Eigen::Vector2d(90 - 50 * slot, 30 + 20 * slot);
+    observation.motion = {0.1 * slot - 0.3,
+                          {0, 1.0 / 1080},
+                          {{900.0 - 500 * slot, 300.0 + 200 * slot}, {4000.0, 7000.0 * slot}}};
     observations.push_back(observation);
   }
   return observations;
@@ -110,7 +112,7 @@ TEST(MarkerViewError, ResidualIsProjectionPlusInsetAndMotionMinusObservationInSi
       rotation * Eigen::Vector3d(&parameters[0][6]) + Eigen::Vector3d(&parameters[1][4]);
   const Eigen::Vector2d expected =
       (ImageFromCam(camera, x_in_cam).value() + 0.07 * observations[0].inset_direction +
-       0.02 * observations[0].shutter_direction_px_s - observations[0].x_in_image_px) /
+       ShiftByRow(observations[0].motion, 0.02).value_px - observations[0].x_in_image_px) /
       32.0;
   EXPECT_LT((residual - expected).norm(), 1e-12);
 }

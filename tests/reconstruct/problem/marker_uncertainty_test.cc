@@ -48,7 +48,7 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   CornerErrors corner_errors;
   for (const ModelImage& image : model.images) {
     for (std::size_t i = 0; i < image.points2D.size(); ++i) {
-      corner_errors.velocities_px_s[image.image_id].emplace_back(100.0 * image.image_id, 5.0 * i);
+      corner_errors.motions[image.image_id].push_back({{100.0 * image.image_id, 5.0 * i}, {}});
     }
   }
   MarkerAdjustmentOptions options;

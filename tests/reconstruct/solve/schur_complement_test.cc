@@ -28,8 +28,8 @@ class SchurComplement : public testing::Test {
     model_ = MakeSceneModel(scene);
     for (const ModelImage& image : model_.images) {
       for (std::size_t i = 0; i < image.points2D.size(); ++i) {
-        corner_errors_.velocities_px_s[image.image_id].emplace_back(100.0 * image.image_id,
-                                                                    5.0 * i);
+        corner_errors_.motions[image.image_id].push_back(
+            {{100.0 * image.image_id + 5.0 * i, 0.0}, {}});
       }
     }
     PerturbSeed(0.001, 1, &model_);

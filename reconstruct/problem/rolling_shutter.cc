@@ -1,0 +1,52 @@
+#include "reconstruct/problem/rolling_shutter.h"
+
+#include <algorithm>
+
+#include <ceres/jet.h>
+
+namespace velamap {
+
+RowMotion RowMotionOf(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
+                      const CornerMotion& motion) {
+  // Sensors are wider than high.
+  const bool is_portrait = camera.height_px > camera.width_px;
+  RowMotion result;
+  result.row_by_px[is_portrait ? 0 : 1] = 1.0 / std::min(camera.width_px, camera.height_px);
+  result.row = result.row_by_px.dot(x_in_image_px) - 0.5;
+  result.motion = motion;
+  return result;
+}
+
+RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s) {
+  using Jet = ceres::Jet<double, 1>;
+  using JetVector = Eigen::Matrix<Jet, 2, 1>;
+  const auto& [velocity_px_s, acceleration_px_s2] = motion.motion;
+  const Jet readout_s(rolling_shutter_s, 0);
+  // A corner at frame time t is seen at t + readout * row(t): derivatives of that by t.
+  const Jet time_rate = 1.0 + readout_s * motion.row_by_px.dot(velocity_px_s);
+  const Jet time_acceleration_1_s = readout_s * motion.row_by_px.dot(acceleration_px_s2);
+  const JetVector velocity = velocity_px_s.cast<Jet>() / time_rate;
+  const JetVector acceleration =
+      (acceleration_px_s2.cast<Jet>() - time_acceleration_1_s * velocity) / (time_rate * time_rate);
+  const Jet since_middle_s = readout_s * motion.row;
+  // From the motion at the corner's own row back to the middle row.
+  const JetVector shift =
+      since_middle_s * velocity - 0.5 * since_middle_s * since_middle_s * acceleration;
+  return {{shift.x().a, shift.y().a}, {shift.x().v[0], shift.y().v[0]}};
+}
+
+void MoveToMiddleRow(double rolling_shutter_s, const CornerMotions& motions, Model* model) {
+  if (rolling_shutter_s == 0) return;
+  for (ModelImage& image : model->images) {
+    const auto of_image = motions.find(image.image_id);
+    if (of_image == motions.end()) continue;
+    const Camera& camera = model->cameras.at(image.camera_id);
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      Eigen::Vector2d& x_px = image.points2D[i].x_in_image_px;
+      x_px -=
+          ShiftByRow(RowMotionOf(camera, x_px, of_image->second.at(i)), rolling_shutter_s).value_px;
+    }
+  }
+}
+
+}  // namespace velamap

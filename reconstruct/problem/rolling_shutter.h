@@ -1,0 +1,41 @@
+// How a rolling shutter displaces corners: the rows of a frame are read one after the other, from
+// the first to the last in rolling_shutter_s, while the corners move. The time of a frame is that
+// of its middle row.
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include "reconstruct/model/model.h"
+#include "reconstruct/registration/corner_motions.h"
+
+namespace velamap {
+
+// A corner while the rows of its frame are read.
+struct RowMotion {
+  double row = 0.0;  // of the corner: -0.5 for the first row of the frame, 0.5 for the last
+  Eigen::Vector2d row_by_px = Eigen::Vector2d::Zero();  // derivative of `row` by the image point
+  CornerMotion motion;
+};
+
+// In portrait frames, which are turned, the sensor's rows are the columns of the image, from left
+// to right.
+RowMotion RowMotionOf(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
+                      const CornerMotion& motion);
+
+// How far the corner moves from when the middle row is read to when its own row is, and the
+// derivative by rolling_shutter_s.
+struct RowShift {
+  Eigen::Vector2d value_px, by_shutter_px_s;
+};
+
+// To second order in the time between the two rows. The motion from frame to frame is not yet that
+// of the corner, because each frame shows the corner in another row and so at another time of the
+// frame.
+RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s);
+
+// Corrects the image points for the rolling shutter: moves each to its place at the time when the
+// middle row is read.
+void MoveToMiddleRow(double rolling_shutter_s, const CornerMotions& motions, Model* model);
+
+}  // namespace velamap

@@ -1,0 +1,208 @@
+#include "reconstruct/registration/corner_motions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "reconstruct/registration/repeated_frames.h"
+
+namespace velamap {
+namespace {
+
+// Over a longer time, a hand-held camera may have reversed its motion.
+constexpr double kLongestStep_s = 0.15;
+
+const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
+  const auto it =
+      std::lower_bound(frame.markers.begin(), frame.markers.end(), marker_id,
+                       [](const MarkerDetection& marker, int id) { return marker.marker_id < id; });
+  return it != frame.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
+}
+
+struct TimedFrame {
+  const FrameDetections* detections = nullptr;
+  double time_s = 0.0;  // after the frame whose corners' motions are sought
+};
+
+// That frame and those around it.
+using FrameWindow = std::vector<TimedFrame>;
+
+// Velocity, then acceleration.
+using MotionVector = Eigen::Matrix<double, 4, 1>;
+
+// Weights of the values at these times, one of which is 0. The sums weighted by the columns are the
+// first and the second derivative at time 0 of the polynomial through the values.
+Eigen::MatrixX2d DerivativeWeights(const std::vector<double>& times_s) {
+  const auto size = static_cast<Eigen::Index>(times_s.size());
+  const double unit_s = times_s.back() - times_s.front();
+  const Eigen::ArrayXd times = Eigen::Map<const Eigen::ArrayXd>(times_s.data(), size) / unit_s;
+  Eigen::MatrixXd powers(size, size);
+  for (Eigen::Index power = 0; power < size; ++power)
+    powers.row(power) = times.pow(static_cast<double>(power)).matrix().transpose();
+  Eigen::MatrixX2d derivatives = Eigen::MatrixX2d::Zero(size, 2);
+  derivatives(1, 0) = 1 / unit_s;
+  derivatives(2, 1) = 2 / (unit_s * unit_s);
+  return powers.partialPivLu().solve(derivatives);
+}
+
+// The motion of the mean of a marker's corners. Motions of single corners are twice as noisy, and
+// noise in the velocities makes the estimated shutter time too short. Nothing unless the marker is
+// seen in three frames and, where there are such, before and after this one.
+std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_id) {
+  constexpr std::size_t kMinNumFrames = 3;
+  std::vector<double> times_s;
+  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(window.size()));
+  for (const TimedFrame& frame : window) {
+    const MarkerDetection* seen = FindMarker(*frame.detections, marker_id);
+    if (seen == nullptr) continue;
+    places.col(static_cast<Eigen::Index>(times_s.size())) = CornerMean(*seen);
+    times_s.push_back(frame.time_s);
+  }
+  const auto is_between = [](double first_s, double last_s) { return first_s < 0 && last_s > 0; };
+  if (times_s.size() < kMinNumFrames) return std::nullopt;
+  if (is_between(window.front().time_s, window.back().time_s) &&
+      !is_between(times_s.front(), times_s.back())) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix2d derivatives =
+      places.leftCols(static_cast<Eigen::Index>(times_s.size())) * DerivativeWeights(times_s);
+  return MotionVector(derivatives.reshaped());
+}
+
+struct AffineField {
+  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
+  MotionVector at_center = MotionVector::Zero();
+  Eigen::Matrix<double, 4, 2> gradient = Eigen::Matrix<double, 4, 2>::Zero();
+
+  MotionVector At(const Eigen::Vector2d& x_in_image_px) const {
+    return at_center + gradient * (x_in_image_px - center_px);
+  }
+};
+
+// Nothing for fewer than three markers. The field does not change along an axis over which the
+// markers spread by less than half a side (RMS): there it would be extrapolated to their corners,
+// which multiplies the noise of the motions.
+std::optional<AffineField> FitField(const FrameDetections& frame,
+                                    const std::vector<std::optional<MotionVector>>& motions) {
+  constexpr int kMinNumMarkers = 3;
+  constexpr double kMinSpread = 0.5;  // of a side
+  const auto num_known = std::count_if(motions.begin(), motions.end(),
+                                       [](const auto& motion) { return motion.has_value(); });
+  if (num_known < kMinNumMarkers) return std::nullopt;
+  Eigen::MatrixX2d places(num_known, 2);
+  Eigen::MatrixX4d values(num_known, 4);
+  Eigen::Index row = 0;
+  double side_px = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (!motions[i]) continue;
+    side_px += QuadMeanSide(frame.markers[i].corners_in_image_px) / static_cast<double>(num_known);
+    places.row(row) = CornerMean(frame.markers[i]).transpose();
+    values.row(row++) = motions[i]->transpose();
+  }
+  AffineField field;
+  field.center_px = places.colwise().mean();
+  field.at_center = values.colwise().mean();
+  places.rowwise() -= field.center_px.transpose();
+  values.rowwise() -= field.at_center.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(places.transpose() * places);
+  const Eigen::Matrix<double, 4, 2> sums = values.transpose() * places;
+  const double least_sum = static_cast<double>(num_known) * std::pow(kMinSpread * side_px, 2);
+  for (int i = 0; i < 2; ++i) {
+    if (!(axes.eigenvalues()[i] > least_sum)) continue;
+    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
+    field.gradient += sums * axis * axis.transpose() / axes.eigenvalues()[i];
+  }
+  return field;
+}
+
+// Empty where the neighbouring frames show too few markers.
+std::vector<CornerMotion> MotionsOf(const FrameDetections& frame, const FrameWindow& window) {
+  std::vector<std::optional<MotionVector>> measured;
+  for (const MarkerDetection& marker : frame.markers) {
+    measured.push_back(MeasureMotion(window, marker.marker_id));
+  }
+  const std::optional<AffineField> field = FitField(frame, measured);
+  std::vector<CornerMotion> motions;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i] && !field) return {};
+    const MarkerDetection& marker = frame.markers[i];
+    for (const Eigen::Vector2d& x_in_image_px : marker.corners_in_image_px) {
+      MotionVector motion = field ? field->At(x_in_image_px) : *measured[i];
+      // Within a marker, the field says how the velocity changes. Accelerations are too noisy for
+      // more than the field.
+      if (field && measured[i]) {
+        motion.head<2>() += (*measured[i] - field->At(CornerMean(marker))).head<2>();
+      }
+      motions.push_back({motion.head<2>(), motion.tail<2>()});
+    }
+  }
+  return motions;
+}
+
+// What the sensor has seen at one time, and the frames that show it: one, and those that repeat it.
+struct Exposure {
+  double time_s = 0.0;
+  std::vector<const DatabaseImage*> frames;
+};
+
+// In the order of time. Photographs are left out.
+std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
+  std::vector<const DatabaseImage*> frames;
+  for (const DatabaseImage& image : images) {
+    if (image.detections.time_s) frames.push_back(&image);
+  }
+  std::sort(frames.begin(), frames.end(), [](const DatabaseImage* a, const DatabaseImage* b) {
+    return *a->detections.time_s < *b->detections.time_s;
+  });
+  const std::vector<bool> is_repeated = FindRepeatedFrames(frames);
+  std::vector<Exposure> exposures;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!is_repeated[i]) exposures.push_back({*frames[i]->detections.time_s, {}});
+    exposures.back().frames.push_back(frames[i]);
+  }
+  return exposures;
+}
+
+// The frames within two exposures of exposure `idx`, none more than kLongestStep_s from the next.
+FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx) {
+  constexpr std::size_t kReach = 2;
+  const auto are_near = [&](std::size_t i) {  // this one and the next
+    const double step_s = exposures[i + 1].time_s - exposures[i].time_s;
+    return step_s > 0 && step_s <= kLongestStep_s &&
+           exposures[i].frames.front()->camera_id == exposures[i + 1].frames.front()->camera_id;
+  };
+  std::size_t begin = idx, end = idx + 1;
+  while (begin > 0 && begin + kReach > idx && are_near(begin - 1)) --begin;
+  while (end < exposures.size() && end <= idx + kReach && are_near(end - 1)) ++end;
+  FrameWindow window;
+  for (std::size_t i = begin; i < end; ++i) {
+    window.push_back(
+        {&exposures[i].frames.front()->detections, exposures[i].time_s - exposures[idx].time_s});
+  }
+  return window;
+}
+
+}  // namespace
+
+CornerMotions CornerMotionsOf(const std::vector<DatabaseImage>& images) {
+  const std::vector<Exposure> exposures = ExposuresOf(images);
+  CornerMotions motions;
+  for (std::size_t i = 0; i < exposures.size(); ++i) {
+    FrameWindow window = WindowAround(exposures, i);
+    for (const DatabaseImage* frame : exposures[i].frames) {
+      for (TimedFrame& timed : window) {
+        if (timed.time_s == 0) timed.detections = &frame->detections;
+      }
+      std::vector<CornerMotion> of_image = MotionsOf(frame->detections, window);
+      if (!of_image.empty()) motions[frame->image_id] = std::move(of_image);
+    }
+  }
+  return motions;
+}
+
+}  // namespace velamap
