@@ -285,8 +285,7 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
 }  // namespace
 
 Command AutomaticReconstructor() {
-  return MakeCommand(std::make_shared<AutomaticReconstructorCommandOptions>(), Declare, Validate,
-                     Run);
+  return MakeCommand<AutomaticReconstructorCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,6 +1,5 @@
 #include <iostream>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,6 +25,7 @@ struct BundleAdjusterCommandOptions : CommandOptions {
 };
 
 CommandSyntax Declare(BundleAdjusterCommandOptions* options) {
+  options->adjustment.backend = AdjustmentBackend::kColmap;  // needs no more than a model
   PathOptions* paths = &options->paths;
   return {"bundle_adjuster",
           "refines all cameras and points jointly (bundle adjustment)",
@@ -154,9 +154,7 @@ void Run(const BundleAdjusterCommandOptions& options) {
 }  // namespace
 
 Command BundleAdjuster() {
-  const auto options = std::make_shared<BundleAdjusterCommandOptions>();
-  options->adjustment.backend = AdjustmentBackend::kColmap;  // needs no more than a model
-  return MakeCommand(options, Declare, Validate, Run);
+  return MakeCommand<BundleAdjusterCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -128,7 +127,7 @@ void Run(const CameraCalibratorCommandOptions& options) {
 }  // namespace
 
 Command CameraCalibrator() {
-  return MakeCommand(std::make_shared<CameraCalibratorCommandOptions>(), Declare, Validate, Run);
+  return MakeCommand<CameraCalibratorCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,6 +35,8 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
 CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
   PathOptions* paths = &options->paths;
   CentralFrameSweepOptions* sweep = &options->sweep;
+  sweep->registration.method = RegistrationMethod::kThesis;
+  sweep->adjustment.backend = AdjustmentBackend::kMarkers;  // profits from a warm start
   return {"central_frame_sweeper",
           "repeats the thesis's method around many central frames, one row each",
           "--database_path database.db --layout_path layout.yml \\\n"
@@ -110,10 +111,7 @@ void Run(const CentralFrameSweeperCommandOptions& options) {
 }  // namespace
 
 Command CentralFrameSweeper() {
-  const auto options = std::make_shared<CentralFrameSweeperCommandOptions>();
-  options->sweep.registration.method = RegistrationMethod::kThesis;
-  options->sweep.adjustment.backend = AdjustmentBackend::kMarkers;  // profits from a warm start
-  return MakeCommand(options, Declare, Validate, Run);
+  return MakeCommand<CentralFrameSweeperCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

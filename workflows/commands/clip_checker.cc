@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -201,8 +200,6 @@ void Run(const ClipCheckerCommandOptions& options) {
 
 }  // namespace
 
-Command ClipChecker() {
-  return MakeCommand(std::make_shared<ClipCheckerCommandOptions>(), Declare, Validate, Run);
-}
+Command ClipChecker() { return MakeCommand<ClipCheckerCommandOptions>(Declare, Validate, Run); }
 
 }  // namespace velamap

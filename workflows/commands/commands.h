@@ -21,11 +21,12 @@ struct Command {
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 
-// Makes a command that owns `options`. `declare` is called at once; `validate` and `run` are called
-// when the command runs, after the log level has been set from the options.
+// Makes a command that owns its options. `declare` is called at once; `validate` and `run` are
+// called when the command runs, after the log level has been set from the options.
 template <typename Options>
-Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*declare)(Options*),
-                    void (*validate)(Options*), void (*run)(const Options&)) {
+Command MakeCommand(CommandSyntax (*declare)(Options*), void (*validate)(Options*),
+                    void (*run)(const Options&)) {
+  const auto options = std::make_shared<Options>();
   CommandSyntax syntax = declare(options.get());
   syntax.typed = &options->typed;
   return {syntax, [=](const Arguments& arguments) {

@@ -1,7 +1,6 @@
 #include "importer/database_merger.h"
 
 #include <iostream>
-#include <memory>
 
 #include "importer/base/replacement.h"
 #include "importer/text/write_formatted.h"
@@ -57,7 +56,7 @@ void Run(const DatabaseMergerCommandOptions& options) {
 }  // namespace
 
 Command DatabaseMerger() {
-  return MakeCommand(std::make_shared<DatabaseMergerCommandOptions>(), Declare, Validate, Run);
+  return MakeCommand<DatabaseMergerCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 
 #include "importer/base/atomic_output.h"
 #include "importer/text/write_formatted.h"
@@ -77,7 +76,7 @@ void Run(const FrameRegistratorCommandOptions& options) {
 }  // namespace
 
 Command FrameRegistrator() {
-  return MakeCommand(std::make_shared<FrameRegistratorCommandOptions>(), Declare, Validate, Run);
+  return MakeCommand<FrameRegistratorCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <iostream>
-#include <memory>
 
 #include "importer/layout/layout.h"
 #include "importer/print/marker_sheets.h"
@@ -85,7 +84,7 @@ void Run(const MarkerGeneratorCommandOptions& options) {
 }  // namespace
 
 Command MarkerGenerator() {
-  return MakeCommand(std::make_shared<MarkerGeneratorCommandOptions>(), Declare, Validate, Run);
+  return MakeCommand<MarkerGeneratorCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -111,7 +110,7 @@ void Run(const MarkerImporterCommandOptions& options) {
 }  // namespace
 
 Command MarkerImporter() {
-  return MakeCommand(std::make_shared<MarkerImporterCommandOptions>(), Declare, Validate, Run);
+  return MakeCommand<MarkerImporterCommandOptions>(Declare, Validate, Run);
 }
 
 }  // namespace velamap

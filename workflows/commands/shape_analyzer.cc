@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include "exporters/datum/known_points_report.h"
@@ -152,8 +151,6 @@ void Run(const ShapeAnalyzerCommandOptions& options) {
 
 }  // namespace
 
-Command ShapeAnalyzer() {
-  return MakeCommand(std::make_shared<ShapeAnalyzerCommandOptions>(), Declare, Validate, Run);
-}
+Command ShapeAnalyzer() { return MakeCommand<ShapeAnalyzerCommandOptions>(Declare, Validate, Run); }
 
 }  // namespace velamap

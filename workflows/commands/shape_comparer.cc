@@ -1,6 +1,5 @@
 #include <functional>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -287,8 +286,6 @@ void Run(const ShapeComparerCommandOptions& options) {
 
 }  // namespace
 
-Command ShapeComparer() {
-  return MakeCommand(std::make_shared<ShapeComparerCommandOptions>(), Declare, Validate, Run);
-}
+Command ShapeComparer() { return MakeCommand<ShapeComparerCommandOptions>(Declare, Validate, Run); }
 
 }  // namespace velamap

@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include "exporters/report/verdict.h"
@@ -115,8 +114,6 @@ void Run(const ShapeExporterCommandOptions& options) {
 
 }  // namespace
 
-Command ShapeExporter() {
-  return MakeCommand(std::make_shared<ShapeExporterCommandOptions>(), Declare, Validate, Run);
-}
+Command ShapeExporter() { return MakeCommand<ShapeExporterCommandOptions>(Declare, Validate, Run); }
 
 }  // namespace velamap

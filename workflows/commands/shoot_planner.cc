@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include "exporters/formats/shape_csv.h"
@@ -166,8 +165,6 @@ void Run(const ShootPlannerCommandOptions& options) {
 
 }  // namespace
 
-Command ShootPlanner() {
-  return MakeCommand(std::make_shared<ShootPlannerCommandOptions>(), Declare, Validate, Run);
-}
+Command ShootPlanner() { return MakeCommand<ShootPlannerCommandOptions>(Declare, Validate, Run); }
 
 }  // namespace velamap
