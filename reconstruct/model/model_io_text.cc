@@ -10,7 +10,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
-#include "importer/text/write_formatted.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/model_records.h"
 
@@ -183,19 +182,19 @@ void ReadPoints3DText(std::istream& in, const std::string& name, Model* model) {
 }
 
 void WriteCamerasText(const Model& model, std::ostream& out) {
-  WriteFormatted(out, "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n");
+  out << fmt::format("# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n");
   for (const auto& [camera_id, camera] : model.cameras) {
-    WriteFormatted(out, "{} {} {} {}", camera_id, CameraModelName(camera.model), camera.width_px,
-                   camera.height_px);
-    for (const double param : camera.params) WriteFormatted(out, " {:.17g}", param);
+    out << fmt::format("{} {} {} {}", camera_id, CameraModelName(camera.model), camera.width_px,
+                       camera.height_px);
+    for (const double param : camera.params) out << fmt::format(" {:.17g}", param);
     out << '\n';
   }
 }
 
 void WriteImagesText(const Model& model, std::ostream& out) {
-  WriteFormatted(out,
-                 "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n"
-                 "# POINTS2D[] as X Y POINT3D_ID\n");
+  out << fmt::format(
+      "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n"
+      "# POINTS2D[] as X Y POINT3D_ID\n");
   for (const ModelImage& image : model.images) {
     if (image.name.find_first_of("\r\n") != std::string::npos) {
       throw InputError(
@@ -204,14 +203,14 @@ void WriteImagesText(const Model& model, std::ostream& out) {
     }
     const Eigen::Quaterniond& q = image.cam_from_world.rotation;
     const Eigen::Vector3d& t = image.cam_from_world.translation;
-    WriteFormatted(out, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {}\n",
-                   image.image_id, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), image.camera_id,
-                   image.name);
+    out << fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {}\n",
+                       image.image_id, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(),
+                       image.camera_id, image.name);
     const char* separator = "";
     for (const Point2D& point2D : image.points2D) {
       // As a signed number, kInvalidPoint3DId is -1.
-      WriteFormatted(out, "{}{:.17g} {:.17g} {}", separator, point2D.x_in_image_px.x(),
-                     point2D.x_in_image_px.y(), static_cast<std::int64_t>(point2D.point3D_id));
+      out << fmt::format("{}{:.17g} {:.17g} {}", separator, point2D.x_in_image_px.x(),
+                         point2D.x_in_image_px.y(), static_cast<std::int64_t>(point2D.point3D_id));
       separator = " ";
     }
     out << '\n';
@@ -219,13 +218,13 @@ void WriteImagesText(const Model& model, std::ostream& out) {
 }
 
 void WritePoints3DText(const Model& model, std::ostream& out) {
-  WriteFormatted(out, "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n");
+  out << fmt::format("# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n");
   for (const auto& [point3D_id, point] : model.points3D) {
     const Eigen::Vector3d& x = point.x_in_world;
-    WriteFormatted(out, "{} {:.17g} {:.17g} {:.17g} {} {} {} {:.17g}", point3D_id, x.x(), x.y(),
-                   x.z(), point.color[0], point.color[1], point.color[2], point.mean_error_px);
+    out << fmt::format("{} {:.17g} {:.17g} {:.17g} {} {} {} {:.17g}", point3D_id, x.x(), x.y(),
+                       x.z(), point.color[0], point.color[1], point.color[2], point.mean_error_px);
     for (const TrackElement& element : SortedTrack(point)) {
-      WriteFormatted(out, " {} {}", element.image_id, element.point2D_idx);
+      out << fmt::format(" {} {}", element.image_id, element.point2D_idx);
     }
     out << '\n';
   }

@@ -6,7 +6,6 @@
 
 #include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
-#include "importer/text/write_formatted.h"
 #include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
@@ -117,21 +116,20 @@ void RefuseOptionsWithoutData(const BundleAdjusterCommandOptions& options,
 }
 
 void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {
-  WriteFormatted(out, "reprojection_error_before_px: {}\n", ErrorText(result.error_before_px));
-  WriteFormatted(out, "reprojection_error_px: {}\n", ErrorText(result.error_after_px));
-  WriteFormatted(out, "outliers_removed: {} of {} observations\n", result.num_removed,
-                 result.error_before_px.count);
+  out << fmt::format("reprojection_error_before_px: {}\n", ErrorText(result.error_before_px));
+  out << fmt::format("reprojection_error_px: {}\n", ErrorText(result.error_after_px));
+  out << fmt::format("outliers_removed: {} of {} observations\n", result.num_removed,
+                     result.error_before_px.count);
   if (result.uncertainty) {
-    WriteFormatted(out, "scale_sigma: {:.4f} %\n",
-                   100.0 * result.uncertainty->relative_scale_sigma);
-    WriteFormatted(out, "corners_above_4_sigma: {:.3f} %\n",
-                   100.0 * result.uncertainty->share_above_4_sigma);
+    out << fmt::format("scale_sigma: {:.4f} %\n", 100.0 * result.uncertainty->relative_scale_sigma);
+    out << fmt::format("corners_above_4_sigma: {:.3f} %\n",
+                       100.0 * result.uncertainty->share_above_4_sigma);
     PrintRollingShutter(*result.uncertainty, out);
   }
   for (const auto& [camera_id, camera] : result.cameras) {
-    WriteFormatted(out, "camera_found: {}\n", DescribeCamera(camera));
+    out << fmt::format("camera_found: {}\n", DescribeCamera(camera));
   }
-  WriteFormatted(out, "model_path: {}\n", model_path);
+  out << fmt::format("model_path: {}\n", model_path);
 }
 
 void Run(const BundleAdjusterCommandOptions& options) {

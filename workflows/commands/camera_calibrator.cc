@@ -8,7 +8,6 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/calibrate/board_calibration.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
@@ -84,21 +83,22 @@ void Validate(CameraCalibratorCommandOptions* options) {
 
 void Print(const CameraCalibration& calibration, std::ostream& out) {
   PrintVerdict(JudgeCalibration(calibration), out);
-  WriteFormatted(out, "camera: {}\n", DescribeCamera(calibration.camera));
-  WriteFormatted(out, "views: {} of {} pictures that show the board\n",
-                 calibration.UsedViews().size(), calibration.num_images);
-  WriteFormatted(out, "reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
-                 calibration.error_px.rms, calibration.error_px.median, calibration.error_px.max);
-  WriteFormatted(out, "outliers_removed: {} of {} corners\n", calibration.num_outliers,
-                 calibration.num_outliers + static_cast<int>(calibration.residuals.size()));
+  out << fmt::format("camera: {}\n", DescribeCamera(calibration.camera));
+  out << fmt::format("views: {} of {} pictures that show the board\n",
+                     calibration.UsedViews().size(), calibration.num_images);
+  out << fmt::format("reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
+                     calibration.error_px.rms, calibration.error_px.median,
+                     calibration.error_px.max);
+  out << fmt::format("outliers_removed: {} of {} corners\n", calibration.num_outliers,
+                     calibration.num_outliers + static_cast<int>(calibration.residuals.size()));
   for (const CameraModelScore& score : calibration.scores) {
-    WriteFormatted(out, "unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
-                   CameraModelName(score.model));
+    out << fmt::format("unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
+                       CameraModelName(score.model));
   }
   for (const std::string& advice : AdvisedViews(calibration)) {
-    WriteFormatted(out, "shoot_more: {}\n", advice);
+    out << fmt::format("shoot_more: {}\n", advice);
   }
-  WriteFormatted(out, "board: {}\n", DescribeBoard(calibration.board));
+  out << fmt::format("board: {}\n", DescribeBoard(calibration.board));
 }
 
 // Without its folder: pages are passed on to others.
@@ -120,8 +120,8 @@ void Run(const CameraCalibratorCommandOptions& options) {
         out);
   });
   Print(calibration, std::cout);
-  WriteFormatted(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
-                 options.report_path);
+  std::cout << fmt::format("camera_path: {}\nreport_path: {}\n", options.paths.output_path,
+                           options.report_path);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
@@ -82,12 +81,12 @@ void Print(const std::vector<SweepRow>& rows, const std::string& output_path, st
   int num_results = 0;
   for (const SweepRow& row : rows) num_results += row.reason.empty();
   const SweepRow& best = rows[static_cast<std::size_t>(BestRow(rows))];
-  WriteFormatted(out, "central_frames: {} of {} with a result\n", num_results, rows.size());
-  WriteFormatted(out, "best_central_frame: {}\n", best.central_frame);
-  WriteFormatted(out, "best_num_markers: {}\n", best.shape.num_markers);
-  WriteFormatted(out, "best_area_error_mm2: {:.3f}\n", best.shape.area_error_mm2.mean);
-  WriteFormatted(out, "best_reprojection_error_px: {:.3f}\n", best.model.error_px.mean);
-  WriteFormatted(out, "table_path: {}\n", output_path);
+  out << fmt::format("central_frames: {} of {} with a result\n", num_results, rows.size());
+  out << fmt::format("best_central_frame: {}\n", best.central_frame);
+  out << fmt::format("best_num_markers: {}\n", best.shape.num_markers);
+  out << fmt::format("best_area_error_mm2: {:.3f}\n", best.shape.area_error_mm2.mean);
+  out << fmt::format("best_reprojection_error_px: {:.3f}\n", best.model.error_px.mean);
+  out << fmt::format("table_path: {}\n", output_path);
 }
 
 void Run(const CentralFrameSweeperCommandOptions& options) {

@@ -10,7 +10,6 @@
 #include "importer/layout/layout_writer.h"
 #include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
 #include "workflows/commands/commands.h"
@@ -101,17 +100,17 @@ std::string StretchesText(const std::vector<ClipStretch>& stretches) {
 
 void PrintLight(const ClipFacts& facts, std::ostream& out) {
   if (!facts.white) return;
-  WriteFormatted(out, "grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black,
-                 *facts.white);
-  WriteFormatted(out, "blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n",
-                 *facts.blur_px, *facts.motion_px);
+  out << fmt::format("grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black,
+                     *facts.white);
+  out << fmt::format("blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n",
+                     *facts.blur_px, *facts.motion_px);
 }
 
 void PrintPrecision(const ClipPrecision& precision, std::ostream& out) {
-  WriteFormatted(out, "precision: {:.2g} mm (1 sigma, median marker) from {} images, {} markers\n",
-                 precision.marker_sigma_mm, precision.num_images, precision.num_markers);
-  WriteFormatted(out, "scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
-  WriteFormatted(out, "parallax_deg: {:.0f}\n", precision.parallax_deg);
+  out << fmt::format("precision: {:.2g} mm (1 sigma, median marker) from {} images, {} markers\n",
+                     precision.marker_sigma_mm, precision.num_images, precision.num_markers);
+  out << fmt::format("scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
+  out << fmt::format("parallax_deg: {:.0f}\n", precision.parallax_deg);
 }
 
 // A clip from one place looks as good as any other in each of its frames.
@@ -119,8 +118,7 @@ void PrintWhatIsNotChecked(const ClipFacts& facts, std::ostream& out) {
   if (facts.precision || facts.num_frames_of_id.empty() || !facts.no_precision_because.empty()) {
     return;
   }
-  WriteFormatted(
-      out,
+  out << fmt::format(
       "not_checked: depth, for lack of {}: see that the camera moves sideways by a "
       "third of the distance or more, or give {}\n",
       facts.has_camera ? "the markers' sizes" : "a calibration",
@@ -130,14 +128,14 @@ void PrintWhatIsNotChecked(const ClipFacts& facts, std::ostream& out) {
 void Print(const ClipFacts& facts, std::ostream& out) {
   PrintVerdict(JudgeClip(facts), out);
   if (const std::string hint = SizeHint(facts); !hint.empty()) {
-    WriteFormatted(out, "hint: {}\n", hint);
+    out << fmt::format("hint: {}\n", hint);
   }
   PrintWhatIsNotChecked(facts, out);
-  WriteFormatted(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
-                 facts.num_frames, facts.width_px, facts.height_px);
+  out << fmt::format("frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
+                     facts.num_frames, facts.width_px, facts.height_px);
   if (facts.dictionary.empty()) return;
-  WriteFormatted(
-      out, "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
+  out << fmt::format(
+      "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
       facts.num_markers_found
           ? fmt::format(
                 " (found by trying: {} detections{})", *facts.num_markers_found,
@@ -145,26 +143,25 @@ void Print(const ClipFacts& facts, std::ostream& out) {
                     ? fmt::format("; {}: {}", facts.second_dictionary, *facts.num_markers_of_second)
                     : "")
           : "");
-  WriteFormatted(out, "markers_seen: {}\n", facts.num_frames_of_id.size());
+  out << fmt::format("markers_seen: {}\n", facts.num_frames_of_id.size());
   if (!facts.has_layout) {
     std::vector<int> ids;
     for (const auto& [marker_id, num_frames] : facts.num_frames_of_id) ids.push_back(marker_id);
-    WriteFormatted(out, "ids: {}\n", IdRanges(ids));
+    out << fmt::format("ids: {}\n", IdRanges(ids));
   } else {
-    WriteFormatted(out, "ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
-    WriteFormatted(out, "ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
+    out << fmt::format("ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
+    out << fmt::format("ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
   }
   if (!facts.ids_read_rarely.empty()) {
-    WriteFormatted(out, "ids_read_rarely: {} (probably misread)\n",
-                   IdRanges(facts.ids_read_rarely));
+    out << fmt::format("ids_read_rarely: {} (probably misread)\n", IdRanges(facts.ids_read_rarely));
   }
   if (facts.side_px.count > 0) {
-    WriteFormatted(out, "side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
-                   facts.side_px.min, facts.side_px.max);
+    out << fmt::format("side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
+                       facts.side_px.min, facts.side_px.max);
   }
   PrintLight(facts, out);
   if (facts.is_video) {
-    WriteFormatted(out, "good_parts_s: {}\n", StretchesText(facts.good_stretches));
+    out << fmt::format("good_parts_s: {}\n", StretchesText(facts.good_stretches));
   }
   if (facts.precision) PrintPrecision(*facts.precision, out);
 }
@@ -185,7 +182,7 @@ void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptio
   for (const std::string& note : proposal.notes) comment += note + "\n";
   WriteFileAtomically(
       path, [&](std::ostream& out) { out << WithSeal(LayoutText(layout, comment), "# ", ""); });
-  WriteFormatted(std::cout, "proposed_layout_path: {}\n", path);
+  std::cout << fmt::format("proposed_layout_path: {}\n", path);
 }
 
 void Run(const ClipCheckerCommandOptions& options) {
@@ -195,7 +192,7 @@ void Run(const ClipCheckerCommandOptions& options) {
   const std::string& path = options.paths.output_path;
   if (path.empty()) return;
   WriteFileAtomically(path, [&](std::ostream& out) { out << EncodePng(check.marked_frame); });
-  WriteFormatted(std::cout, "frame_path: {} ({})\n", path, check.marked_frame_name);
+  std::cout << fmt::format("frame_path: {} ({})\n", path, check.marked_frame_name);
 }
 
 }  // namespace

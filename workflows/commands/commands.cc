@@ -6,7 +6,6 @@
 
 #include "importer/base/error.h"
 #include "importer/text/output_date.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 
@@ -34,12 +33,12 @@ void PrintOverview() {
                "  velamap COMMAND --help       the options that most people need\n"
                "  velamap COMMAND --help_all   all options\n";
   for (const CommandGroup& group : CommandGroups()) {
-    WriteFormatted(std::cout, "\n{}:\n", group.title);
+    std::cout << fmt::format("\n{}:\n", group.title);
     for (const Command& command : group.commands) {
-      WriteFormatted(std::cout, "  {:<25}{}\n", command.syntax.name, command.syntax.description);
+      std::cout << fmt::format("  {:<25}{}\n", command.syntax.name, command.syntax.description);
     }
   }
-  WriteFormatted(std::cout, "  {:<25}{}\n", "help", "this list, or the options of a command");
+  std::cout << fmt::format("  {:<25}{}\n", "help", "this list, or the options of a command");
   std::cout << "\nExample:\n"
                "  velamap automatic_reconstructor --image_path photos --camera_path camera.yml \\\n"
                "    --layout_path layout.yml --workspace_path result\n";

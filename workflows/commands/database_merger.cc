@@ -2,8 +2,9 @@
 
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "importer/base/replacement.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/shared_options.h"
@@ -46,11 +47,11 @@ void Validate(DatabaseMergerCommandOptions* options) {
 
 void Run(const DatabaseMergerCommandOptions& options) {
   const MergeReport report = MergeDatabases(options.merger);
-  WriteFormatted(std::cout, "parts: {}\n", options.merger.database_paths.size());
-  WriteFormatted(std::cout, "images: {}\n", report.num_images);
-  WriteFormatted(std::cout, "markers: {}\n", report.num_markers);
-  WriteFormatted(std::cout, "pairs_with_matches: {}\n", report.num_pairs);
-  WriteFormatted(std::cout, "database_path: {}\n", options.merger.output_path);
+  std::cout << fmt::format("parts: {}\n", options.merger.database_paths.size());
+  std::cout << fmt::format("images: {}\n", report.num_images);
+  std::cout << fmt::format("markers: {}\n", report.num_markers);
+  std::cout << fmt::format("pairs_with_matches: {}\n", report.num_pairs);
+  std::cout << fmt::format("database_path: {}\n", options.merger.output_path);
 }
 
 }  // namespace

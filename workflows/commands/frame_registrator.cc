@@ -1,7 +1,8 @@
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "importer/base/atomic_output.h"
-#include "importer/text/write_formatted.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/seed_model.h"
@@ -47,17 +48,17 @@ void Validate(FrameRegistratorCommandOptions* options) {
 }
 
 void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {
-  WriteFormatted(out, "images_registered: {} of {}\n", seed.model.images.size(),
-                 seed.image_names.size());
-  WriteFormatted(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
-  WriteFormatted(out, "markers_left_out: {}\n",
-                 LeftOutText(NamedById(seed.registration.dropped_markers), "marker"));
-  WriteFormatted(out, "central_image: {}\n", seed.registration.central_image_name);
-  WriteFormatted(out, "markers: {}\n", seed.registration.shape.size());
-  WriteFormatted(out, "reprojection_error_px: {}\n",
-                 ErrorText(SummarizeReprojectionErrors(seed.model)));
-  WriteFormatted(out, "model_path: {}\n", paths.output_path);
-  WriteFormatted(out, "registration_path: {}\n", paths.registration_path);
+  out << fmt::format("images_registered: {} of {}\n", seed.model.images.size(),
+                     seed.image_names.size());
+  out << fmt::format("images_left_out: {}\n", LeftOutText(seed.left_out));
+  out << fmt::format("markers_left_out: {}\n",
+                     LeftOutText(NamedById(seed.registration.dropped_markers), "marker"));
+  out << fmt::format("central_image: {}\n", seed.registration.central_image_name);
+  out << fmt::format("markers: {}\n", seed.registration.shape.size());
+  out << fmt::format("reprojection_error_px: {}\n",
+                     ErrorText(SummarizeReprojectionErrors(seed.model)));
+  out << fmt::format("model_path: {}\n", paths.output_path);
+  out << fmt::format("registration_path: {}\n", paths.registration_path);
 }
 
 void Run(const FrameRegistratorCommandOptions& options) {

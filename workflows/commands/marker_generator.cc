@@ -1,9 +1,10 @@
 #include <filesystem>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "importer/layout/layout.h"
 #include "importer/print/marker_sheets.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
 
@@ -53,25 +54,25 @@ void Validate(MarkerGeneratorCommandOptions* options) {
 
 void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& options,
            std::ostream& out) {
-  WriteFormatted(out, "dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
+  out << fmt::format("dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
   if (report.codes) {
-    WriteFormatted(out, "dictionary_distance: {} bits\n", report.codes->min_distance);
-    WriteFormatted(out, "dictionary_symmetric_codes: {}\n", report.codes->num_symmetric);
+    out << fmt::format("dictionary_distance: {} bits\n", report.codes->min_distance);
+    out << fmt::format("dictionary_symmetric_codes: {}\n", report.codes->num_symmetric);
   }
-  WriteFormatted(out, "markers: {}\n", report.num_markers);
-  WriteFormatted(out, "paper: {}\n", options.print.sheet.paper.name);
-  WriteFormatted(out, "sheets: {}\n", report.num_sheets);
-  WriteFormatted(out, "pages_before_sheets: {}\n", report.num_drawings);
-  if (report.margin_mm > 0) WriteFormatted(out, "white_margin_mm: {:.4g}\n", report.margin_mm);
+  out << fmt::format("markers: {}\n", report.num_markers);
+  out << fmt::format("paper: {}\n", options.print.sheet.paper.name);
+  out << fmt::format("sheets: {}\n", report.num_sheets);
+  out << fmt::format("pages_before_sheets: {}\n", report.num_drawings);
+  if (report.margin_mm > 0) out << fmt::format("white_margin_mm: {:.4g}\n", report.margin_mm);
   if (report.drawn_length_mm) {
-    WriteFormatted(
-        out, "drawn_length_mm: {:.5g} (the printer that made {:.5g} mm of it does so again)\n",
+    out << fmt::format(
+        "drawn_length_mm: {:.5g} (the printer that made {:.5g} mm of it does so again)\n",
         *report.drawn_length_mm, 1000 * options.print.layout->marker_length_m);
   }
   for (const std::string& file : report.files) {
     if (file.find('/') == std::string::npos) {
-      WriteFormatted(out, "file: {}\n",
-                     (std::filesystem::path(options.paths.output_path) / file).string());
+      out << fmt::format("file: {}\n",
+                         (std::filesystem::path(options.paths.output_path) / file).string());
     }
   }
   out << "output_path: " << options.paths.output_path << '\n';

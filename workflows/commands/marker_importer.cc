@@ -7,7 +7,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
@@ -78,25 +77,25 @@ void Validate(MarkerImporterCommandOptions* options) {
 }
 
 void Print(const ImportReport& report, const PathOptions& paths, std::ostream& out) {
-  WriteFormatted(out, "images_added: {}\n", report.num_images_added);
-  WriteFormatted(out, "images_present: {}\n", report.num_images_present);
-  WriteFormatted(out, "images_without_markers: {}\n", report.num_images_without_markers);
-  WriteFormatted(out, "images_skipped: {}\n", report.skipped.size());
-  WriteFormatted(out, "frames_damaged: {}\n", report.num_frames_damaged);
-  WriteFormatted(out, "markers: {}\n", report.num_markers);
-  WriteFormatted(out, "markers_rejected: {}\n", report.num_rejected);
-  WriteFormatted(out, "markers_without_corner_fit: {}\n", report.num_fallbacks);
-  WriteFormatted(out, "ids_not_in_layout: {}\n",
-                 report.ids_not_in_layout.empty()
-                     ? "none"
-                     : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
+  out << fmt::format("images_added: {}\n", report.num_images_added);
+  out << fmt::format("images_present: {}\n", report.num_images_present);
+  out << fmt::format("images_without_markers: {}\n", report.num_images_without_markers);
+  out << fmt::format("images_skipped: {}\n", report.skipped.size());
+  out << fmt::format("frames_damaged: {}\n", report.num_frames_damaged);
+  out << fmt::format("markers: {}\n", report.num_markers);
+  out << fmt::format("markers_rejected: {}\n", report.num_rejected);
+  out << fmt::format("markers_without_corner_fit: {}\n", report.num_fallbacks);
+  out << fmt::format("ids_not_in_layout: {}\n",
+                     report.ids_not_in_layout.empty()
+                         ? "none"
+                         : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
   if (!paths.prior_shape_path.empty()) {
-    WriteFormatted(out, "markers_of_prior_shape: {}\n", report.prior_shape_agreement.num_known);
-    WriteFormatted(out, "markers_agreeing_with_prior_shape: {}\n",
-                   report.prior_shape_agreement.num_agreeing);
+    out << fmt::format("markers_of_prior_shape: {}\n", report.prior_shape_agreement.num_known);
+    out << fmt::format("markers_agreeing_with_prior_shape: {}\n",
+                       report.prior_shape_agreement.num_agreeing);
   }
-  WriteFormatted(out, "pairs_with_matches: {}\n", report.num_pairs);
-  WriteFormatted(out, "database_path: {}\n", paths.database_path);
+  out << fmt::format("pairs_with_matches: {}\n", report.num_pairs);
+  out << fmt::format("database_path: {}\n", paths.database_path);
 }
 
 void Run(const MarkerImporterCommandOptions& options) {

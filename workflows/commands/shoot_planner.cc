@@ -2,6 +2,8 @@
 #include <iostream>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
@@ -11,7 +13,6 @@
 #include "importer/print/placement.h"
 #include "importer/print/print_options.h"
 #include "importer/print/sheet_plan.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/commands/compared_shapes.h"
 #include "workflows/options/option_effects.h"
@@ -160,7 +161,7 @@ void Run(const ShootPlannerCommandOptions& options) {
     folder->Commit();
   }
   PrintPlan(plan, std::cout);
-  if (folder) WriteFormatted(std::cout, "\noutput_path: {}\n", output_path);
+  if (folder) std::cout << fmt::format("\noutput_path: {}\n", output_path);
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 #include <ostream>
 
-#include "importer/text/write_formatted.h"
+#include <fmt/format.h>
+
 #include "workflows/options/help_text.h"
 #include "workflows/run/version.h"
 
@@ -28,30 +29,30 @@ std::string Roff(const std::string& text) {
 }
 
 void BeginPage(const std::string& name, const std::string& description, std::ostream& out) {
-  WriteFormatted(out, ".TH {} 1 \"\" \"velamap {}\" \"User Commands\"\n", Roff(name), kVersion);
-  WriteFormatted(out, ".SH NAME\n{} \\- {}\n", Roff(name), Roff(description));
+  out << fmt::format(".TH {} 1 \"\" \"velamap {}\" \"User Commands\"\n", Roff(name), kVersion);
+  out << fmt::format(".SH NAME\n{} \\- {}\n", Roff(name), Roff(description));
 }
 
 void WriteExample(const std::string& text, std::ostream& out) {
-  WriteFormatted(out, ".SH EXAMPLE\n.nf\n{}\n.fi\n", Roff(text));
+  out << fmt::format(".SH EXAMPLE\n.nf\n{}\n.fi\n", Roff(text));
 }
 
 void WriteOption(const ShownOption& option, std::ostream& out) {
-  WriteFormatted(out, ".TP\n\\fB\\-\\-{}\\fR \\fI{}\\fR", Roff(option.name), Roff(option.unit));
-  if (!option.default_text.empty()) WriteFormatted(out, " (={})", Roff(option.default_text));
-  WriteFormatted(out, "\n{}\n", Roff(option.description));
+  out << fmt::format(".TP\n\\fB\\-\\-{}\\fR \\fI{}\\fR", Roff(option.name), Roff(option.unit));
+  if (!option.default_text.empty()) out << fmt::format(" (={})", Roff(option.default_text));
+  out << fmt::format("\n{}\n", Roff(option.description));
 }
 
 }  // namespace
 
 void WriteManPage(const CommandSyntax& syntax, std::ostream& out) {
   BeginPage("velamap-" + syntax.name, syntax.description, out);
-  WriteFormatted(out, ".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n",
-                 Roff(syntax.name));
+  out << fmt::format(".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n",
+                     Roff(syntax.name));
   out << ".SH OPTIONS\nWhere an option is left out, it has the value after the equals sign in "
          "parentheses.\n";
   for (const ShownGroup& group : ShownOptions(syntax, HelpLength::kAll)) {
-    WriteFormatted(out, ".SS {}\n", Roff(group.title));
+    out << fmt::format(".SS {}\n", Roff(group.title));
     for (const ShownOption& option : group.options) WriteOption(option, out);
   }
   WriteExample("velamap " + syntax.name + " " + syntax.example, out);
@@ -66,10 +67,10 @@ void WriteProgramManPage(const std::vector<CommandGroup>& groups, std::ostream& 
          "value\", "
          "everything else to standard error.\n.SH COMMANDS\n";
   for (const CommandGroup& group : groups) {
-    WriteFormatted(out, ".SS {}\n", Roff(group.title));
+    out << fmt::format(".SS {}\n", Roff(group.title));
     for (const Command& command : group.commands) {
-      WriteFormatted(out, ".TP\n.BR velamap\\-{} (1)\n{}\n", Roff(command.syntax.name),
-                     Roff(command.syntax.description));
+      out << fmt::format(".TP\n.BR velamap\\-{} (1)\n{}\n", Roff(command.syntax.name),
+                         Roff(command.syntax.description));
     }
   }
   out << ".SH EXIT STATUS\n"

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "importer/text/write_formatted.h"
 #include "workflows/options/help_text.h"
 
 namespace velamap {
@@ -37,15 +36,15 @@ void WriteBashValues(const std::map<std::string, ShownOption>& options, std::ost
     if (option.is_path) {
       paths.insert("--" + name);
     } else if (!option.choices.empty()) {
-      WriteFormatted(out, "    --{}) words=\"{}\" ;;\n", name, fmt::join(option.choices, " "));
+      out << fmt::format("    --{}) words=\"{}\" ;;\n", name, fmt::join(option.choices, " "));
     }
   }
-  WriteFormatted(out,
-                 "    {})\n"
-                 "      compopt -o filenames\n"
-                 "      mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
-                 "      return ;;\n",
-                 fmt::join(paths, " | "));
+  out << fmt::format(
+      "    {})\n"
+      "      compopt -o filenames\n"
+      "      mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
+      "      return ;;\n",
+      fmt::join(paths, " | "));
 }
 
 // Escapes text in single quotes for _arguments, where colons and brackets have a meaning.
@@ -88,20 +87,20 @@ void WriteBashCompletion(const std::vector<Command>& commands, std::ostream& out
          "  if [[ -z \"$words\" && $COMP_CWORD -gt 1 ]]; then\n"
          "    case \"${COMP_WORDS[1]}\" in\n";
   for (const Command& command : commands) {
-    WriteFormatted(out, "      {})\n        words=\"--help --help_all", command.syntax.name);
-    for (const ShownOption& option : OptionsOf(command)) WriteFormatted(out, " --{}", option.name);
+    out << fmt::format("      {})\n        words=\"--help --help_all", command.syntax.name);
+    for (const ShownOption& option : OptionsOf(command)) out << fmt::format(" --{}", option.name);
     out << "\" ;;\n";
   }
-  WriteFormatted(out,
-                 "      help) words=\"{0}\" ;;\n"
-                 "    esac\n"
-                 "  elif [[ -z \"$words\" ]]; then\n"
-                 "    words=\"{0}\"\n"
-                 "  fi\n"
-                 "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
-                 "}}\n"
-                 "complete -F _velamap velamap\n",
-                 fmt::join(names, " "));
+  out << fmt::format(
+      "      help) words=\"{0}\" ;;\n"
+      "    esac\n"
+      "  elif [[ -z \"$words\" ]]; then\n"
+      "    words=\"{0}\"\n"
+      "  fi\n"
+      "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
+      "}}\n"
+      "complete -F _velamap velamap\n",
+      fmt::join(names, " "));
 }
 
 void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out) {
@@ -110,7 +109,7 @@ void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out)
          "local -a commands=(\n"
          "  'help:this list, or the options of a command'\n";
   for (const Command& command : commands) {
-    WriteFormatted(out, "  '{}:{}'\n", command.syntax.name, ZshText(command.syntax.description));
+    out << fmt::format("  '{}:{}'\n", command.syntax.name, ZshText(command.syntax.description));
   }
   out << ")\n"
          "if (( CURRENT == 2 )); then\n"
@@ -123,14 +122,14 @@ void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out)
          "case \"$command\" in\n"
          "  help) _describe 'command' commands ;;\n";
   for (const Command& command : commands) {
-    WriteFormatted(out,
-                   "  {})\n"
-                   "    _arguments '(- *)--help[the options that most people need]' \\\n"
-                   "      '(- *)--help_all[all options]'",
-                   command.syntax.name);
+    out << fmt::format(
+        "  {})\n"
+        "    _arguments '(- *)--help[the options that most people need]' \\\n"
+        "      '(- *)--help_all[all options]'",
+        command.syntax.name);
     for (const ShownOption& option : OptionsOf(command)) {
-      WriteFormatted(out, " \\\n      '--{}=[{}]:{}:{}'", option.name, ZshText(option.description),
-                     ZshText(option.unit), ZshValues(option));
+      out << fmt::format(" \\\n      '--{}=[{}]:{}:{}'", option.name, ZshText(option.description),
+                         ZshText(option.unit), ZshValues(option));
     }
     out << " ;;\n";
   }

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <boost/program_options.hpp>
 
-#include "importer/text/write_formatted.h"
-
 namespace velamap {
 namespace {
 
@@ -91,7 +89,7 @@ void PrintHelp(const CommandSyntax& syntax, HelpLength length, std::ostream& out
   const std::size_t num_more =
       NumOptions(ShownOptions(syntax, HelpLength::kAll)) - NumOptions(groups);
   if (num_more > 0) {
-    WriteFormatted(out, "{} more options: velamap {} --help_all\n", num_more, syntax.name);
+    out << fmt::format("{} more options: velamap {} --help_all\n", num_more, syntax.name);
   }
   out << "\nExample:\n  velamap " << syntax.name << ' ' << syntax.example << '\n';
 }

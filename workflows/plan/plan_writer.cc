@@ -9,7 +9,6 @@
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/statistics.h"
 #include "importer/text/csv.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/plan/plan_options.h"
 
 namespace velamap {
@@ -32,47 +31,48 @@ std::string PrecisionText(const PlannedVariant& variant) {
 
 void PrintFacts(const ShootPlan& plan, std::ostream& out) {
   const PlannedPath& path = plan.path;
-  WriteFormatted(out, "markers: {} of {:.4g} m\n", plan.surface.shape.markers.size(),
-                 plan.surface.layout.marker_length_m);
-  WriteFormatted(out, "picture: {} x {} px, focal length {:.0f} px\n", plan.camera.width_px,
-                 plan.camera.height_px, MeanFocalLength(plan.camera));
-  WriteFormatted(out, "distance_m: {:.4g}\narc_deg: {:.4g}\nviews: {}\n", path.distance_m,
-                 path.arc_deg, path.num_views);
-  WriteFormatted(out, "side_px: {:.1f} (median along the arc)\n", plan.along_path.median_side_px);
-  WriteFormatted(out, "found_percent: {:.0f} (of the markers, in a view)\n",
-                 100 * plan.along_path.found_share);
-  WriteFormatted(out, "longest_exposure: {} at {:.2g} m/s\n",
-                 ExposureText(plan.shutters.front().exposure_s), plan.shutters.front().speed_m_s);
+  out << fmt::format("markers: {} of {:.4g} m\n", plan.surface.shape.markers.size(),
+                     plan.surface.layout.marker_length_m);
+  out << fmt::format("picture: {} x {} px, focal length {:.0f} px\n", plan.camera.width_px,
+                     plan.camera.height_px, MeanFocalLength(plan.camera));
+  out << fmt::format("distance_m: {:.4g}\narc_deg: {:.4g}\nviews: {}\n", path.distance_m,
+                     path.arc_deg, path.num_views);
+  out << fmt::format("side_px: {:.1f} (median along the arc)\n", plan.along_path.median_side_px);
+  out << fmt::format("found_percent: {:.0f} (of the markers, in a view)\n",
+                     100 * plan.along_path.found_share);
+  out << fmt::format("longest_exposure: {} at {:.2g} m/s\n",
+                     ExposureText(plan.shutters.front().exposure_s),
+                     plan.shutters.front().speed_m_s);
   if (!plan.plan().precision) return;
   const PlanPrecision& precision = *plan.plan().precision;
-  WriteFormatted(out, "markers_reconstructed: {}\n", precision.marker_sigma_mm.size());
-  WriteFormatted(out, "marker_sigma_mm: {:.2g} (median, size included)\n",
-                 MedianSigma(precision.marker_sigma_mm));
-  WriteFormatted(out, "distance_sigma_mm: {:.2g}\ndistance_after_scaling_sigma_mm: {:.2g}\n",
-                 precision.distance_sigma_mm, precision.distance_after_scaling_sigma_mm);
-  WriteFormatted(out, "scale_sigma_percent: {:.3f}\n", 100 * precision.scale_sigma);
+  out << fmt::format("markers_reconstructed: {}\n", precision.marker_sigma_mm.size());
+  out << fmt::format("marker_sigma_mm: {:.2g} (median, size included)\n",
+                     MedianSigma(precision.marker_sigma_mm));
+  out << fmt::format("distance_sigma_mm: {:.2g}\ndistance_after_scaling_sigma_mm: {:.2g}\n",
+                     precision.distance_sigma_mm, precision.distance_after_scaling_sigma_mm);
+  out << fmt::format("scale_sigma_percent: {:.3f}\n", 100 * precision.scale_sigma);
 }
 
 void PrintViews(const ShootPlan& plan, std::ostream& out) {
-  WriteFormatted(out, "\nWhat one view sees (longest_exposure at {:.2g} m/s)\n",
-                 plan.shutters.front().speed_m_s);
+  out << fmt::format("\nWhat one view sees (longest_exposure at {:.2g} m/s)\n",
+                     plan.shutters.front().speed_m_s);
   out << "distance_m  angle_deg  side_px  in_picture_%  found_%  longest_exposure\n";
   for (const PlannedView& view : plan.views) {
     const ViewSummary& summary = view.summary;
-    WriteFormatted(out, "{:>10.4g}  {:>9.0f}  {:>7.1f}  {:>12.0f}  {:>7.0f}  {:>16}\n",
-                   view.distance_m, view.angle_deg, summary.median_side_px,
-                   100 * summary.in_picture_share, 100 * summary.found_share,
-                   ExposureText(view.exposure_s));
+    out << fmt::format("{:>10.4g}  {:>9.0f}  {:>7.1f}  {:>12.0f}  {:>7.0f}  {:>16}\n",
+                       view.distance_m, view.angle_deg, summary.median_side_px,
+                       100 * summary.in_picture_share, 100 * summary.found_share,
+                       ExposureText(view.exposure_s));
   }
 }
 
 void PrintShutters(const ShootPlan& plan, std::ostream& out) {
-  WriteFormatted(out, "\nHow long the shutter may be open at {:.4g} m\n", plan.path.distance_m);
+  out << fmt::format("\nHow long the shutter may be open at {:.4g} m\n", plan.path.distance_m);
   out << "speed_m_s  speed_knots  motion_px_s  longest_exposure\n";
   for (const PlannedShutter& shutter : plan.shutters) {
-    WriteFormatted(out, "{:>9.2g}  {:>11.2g}  {:>11.0f}  {:>16}\n", shutter.speed_m_s,
-                   shutter.speed_m_s / kMPerSPerKnot, shutter.motion_px_s,
-                   ExposureText(shutter.exposure_s));
+    out << fmt::format("{:>9.2g}  {:>11.2g}  {:>11.0f}  {:>16}\n", shutter.speed_m_s,
+                       shutter.speed_m_s / kMPerSPerKnot, shutter.motion_px_s,
+                       ExposureText(shutter.exposure_s));
   }
 }
 
@@ -80,9 +80,9 @@ void PrintVariants(const ShootPlan& plan, std::ostream& out) {
   out << "\nWhat other paths give (1 sigma; shape: after an alignment with scale)\n"
          "changed   distance_m  arc_deg  views    markers   marker_mm  shape_mm   scale_%\n";
   for (const PlannedVariant& variant : plan.variants) {
-    WriteFormatted(out, "{:<9} {:>10.4g}  {:>7.0f}  {:>5}  {}\n", variant.changed,
-                   variant.path.distance_m, variant.path.arc_deg, variant.path.num_views,
-                   PrecisionText(variant));
+    out << fmt::format("{:<9} {:>10.4g}  {:>7.0f}  {:>5}  {}\n", variant.changed,
+                       variant.path.distance_m, variant.path.arc_deg, variant.path.num_views,
+                       PrecisionText(variant));
   }
 }
 
@@ -112,7 +112,7 @@ std::string RecommendationText(const ShootPlan& plan) {
 
 void PrintPlan(const ShootPlan& plan, std::ostream& out) {
   PrintVerdict(JudgePlan(plan), out);
-  WriteFormatted(out, "recommendation: {}\n", RecommendationText(plan));
+  out << fmt::format("recommendation: {}\n", RecommendationText(plan));
   PrintFacts(plan, out);
   PrintViews(plan, out);
   PrintShutters(plan, out);

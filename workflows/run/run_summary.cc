@@ -13,7 +13,6 @@
 #include "exporters/shape_report.h"
 #include "importer/geometry/units.h"
 #include "importer/text/number_text.h"
-#include "importer/text/write_formatted.h"
 #include "workflows/run/summary.h"
 
 namespace velamap {
@@ -44,70 +43,70 @@ std::vector<ReportLeftOut> MarkersLeftOut(const ReconstructionSummary& summary) 
 
 void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   const ShapeMetrics& metrics = summary.shape.metrics;
-  WriteFormatted(out, "markers: {}", metrics.NumWholeOfLayout());
-  if (metrics.num_layout_markers) WriteFormatted(out, " of {}", *metrics.num_layout_markers);
+  out << fmt::format("markers: {}", metrics.NumWholeOfLayout());
+  if (metrics.num_layout_markers) out << fmt::format(" of {}", *metrics.num_layout_markers);
   if (summary.shape.uncertainty) {
     const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.shape.uncertainty->points);
     if (!sigmas_mm.empty()) {
-      WriteFormatted(out, ", known to {:.2g} mm (1 sigma, median)", MedianSigma(sigmas_mm));
+      out << fmt::format(", known to {:.2g} mm (1 sigma, median)", MedianSigma(sigmas_mm));
     }
   }
   out << '\n';
   const std::vector<ReportLeftOut> left_out = MarkersLeftOut(summary);
   if (!left_out.empty())
-    WriteFormatted(out, "markers left out: {}\n", LeftOutText(left_out, "marker"));
+    out << fmt::format("markers left out: {}\n", LeftOutText(left_out, "marker"));
 }
 
 void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
-  WriteFormatted(out, "size: {}", BoxText(BoundingBox(shape.shape), "x"));
+  out << fmt::format("size: {}", BoxText(BoundingBox(shape.shape), "x"));
   if (shape.scale.relative_sigma) {
-    WriteFormatted(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
+    out << fmt::format(", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
   }
-  WriteFormatted(
-      out, "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",
+  out << fmt::format(
+      "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",
       shape.metrics.side_error_mm.mean);
 }
 
 void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
-  WriteFormatted(out, "images: {} of {} used, {:.2g} px mean reprojection error\n",
-                 summary.num_images, summary.num_images_total,
-                 summary.shape.model_metrics.error_px.mean);
+  out << fmt::format("images: {} of {} used, {:.2g} px mean reprojection error\n",
+                     summary.num_images, summary.num_images_total,
+                     summary.shape.model_metrics.error_px.mean);
   const std::vector<ReportLeftOut> left_out = NeededImages(summary);
-  if (!left_out.empty()) WriteFormatted(out, "images left out: {}\n", LeftOutText(left_out));
+  if (!left_out.empty()) out << fmt::format("images left out: {}\n", LeftOutText(left_out));
 }
 
 void PrintSections(const SectionReport& report, std::ostream& out) {
   for (const Section& section : report.sections) {
-    WriteFormatted(out, "section {} {} at {:.2f} m: camber {} %", section.part, section.name,
-                   section.height_m, FixedText(100.0 * section.camber.value, 1));
+    out << fmt::format("section {} {} at {:.2f} m: camber {} %", section.part, section.name,
+                       section.height_m, FixedText(100.0 * section.camber.value, 1));
     if (section.draft_position)
-      WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
+      out << fmt::format(" at {:.0f} %", 100.0 * section.draft_position->value);
     if (section.twist_deg) {
-      WriteFormatted(out, ", twist {} deg", FixedText(section.twist_deg->value, 1));
+      out << fmt::format(", twist {} deg", FixedText(section.twist_deg->value, 1));
     }
     const std::string missing = MissingEndsText(section);
-    if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);
+    if (!missing.empty()) out << fmt::format("; only a part of the chord: {}", missing);
     out << '\n';
   }
   PrintRigs(report.rigs, out);
   for (const MissingSection& missing : report.missing) {
-    WriteFormatted(out, "section {} {} is missing: {}\n", missing.part, missing.name,
-                   missing.reason);
+    out << fmt::format("section {} {} is missing: {}\n", missing.part, missing.name,
+                       missing.reason);
   }
-  for (const std::string& note : report.notes) WriteFormatted(out, "sections: {}\n", note);
+  for (const std::string& note : report.notes) out << fmt::format("sections: {}\n", note);
 }
 
 void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
   for (const SailSurface& surface : shape.sail.surfaces) {
-    WriteFormatted(out, "surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
-                   surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
+    out << fmt::format("surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
+                       surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : shape.freeform.surfaces) {
-    WriteFormatted(out, "surface: {}, {}, known to {:.2g} mm (1 sigma)\n", ShownName(part.part),
-                   SizeText(part.surface), kMmPerM * part.surface.rms_sigma_m);
+    out << fmt::format("surface: {}, {}, known to {:.2g} mm (1 sigma)\n", ShownName(part.part),
+                       SizeText(part.surface), kMmPerM * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
-    for (const std::string& note : *notes) WriteFormatted(out, "surface: {}\n", note);
+    for (const std::string& note : *notes) out << fmt::format("surface: {}\n", note);
   }
 }
 
@@ -115,14 +114,14 @@ void PrintCamera(const ReconstructionSummary& summary, const WorkspacePaths& pat
                  std::ostream& out) {
   const AdjustmentResult& adjustment = summary.adjustment;
   for (const auto& [camera_id, camera] : adjustment.cameras) {
-    WriteFormatted(out, "camera: found from the images, {}\n",
-                   FoundCameraText(camera, summary.verdict, paths.Camera().string()));
+    out << fmt::format("camera: found from the images, {}\n",
+                       FoundCameraText(camera, summary.verdict, paths.Camera().string()));
   }
   if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return;
-  WriteFormatted(out,
-                 "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
-                 1e3 * adjustment.uncertainty->rolling_shutter_s,
-                 1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
+  out << fmt::format(
+      "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
+      1e3 * adjustment.uncertainty->rolling_shutter_s,
+      1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
 }
 
 // One row for each name, with why it was left out.
@@ -171,15 +170,15 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintMarkers(summary, out);
   PrintSize(summary.shape, out);
   if (!summary.shape.known_points.points.empty()) {
-    WriteFormatted(out, "known points: {}\n", KnownPointsText(summary.shape.known_points));
+    out << fmt::format("known points: {}\n", KnownPointsText(summary.shape.known_points));
   }
   PrintImages(summary, out);
   PrintSections(summary.shape.sail.sections, out);
   PrintSurfaces(summary.shape, out);
   PrintCamera(summary, paths, out);
-  WriteFormatted(out, "look at: {} (in a browser)\n", paths.Report().string());
-  WriteFormatted(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
-  WriteFormatted(out, "in COLMAP: {}\n", ColmapCommand(paths));
+  out << fmt::format("look at: {} (in a browser)\n", paths.Report().string());
+  out << fmt::format("files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
+  out << fmt::format("in COLMAP: {}\n", ColmapCommand(paths));
 }
 
 MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const WorkspacePaths& paths) {

@@ -15,7 +15,6 @@
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
 #include "importer/text/number_text.h"
-#include "importer/text/write_formatted.h"
 
 namespace velamap {
 namespace {
@@ -92,7 +91,7 @@ std::string RigText(const RigNumbers& rig) {
 
 // Prints the frame, the sections of a sail, and the surfaces.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
-  WriteFormatted(out, "frame: {}\n", report.frame.name);
+  out << fmt::format("frame: {}\n", report.frame.name);
   const std::vector<Section>& sections = report.sail.sections.sections;
   if (!sections.empty()) {
     const auto camber_percent = [](const Section& s) -> std::optional<double> {
@@ -103,28 +102,28 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
       return s.twist_deg->value;
     };
     const std::string twists = RangeText(sections, twist_deg);
-    WriteFormatted(out, "sections: {}; camber {} %, {}\n", sections.size(),
-                   RangeText(sections, camber_percent),
-                   twists.empty() ? "no twist" : fmt::format("twist {} deg", twists));
+    out << fmt::format("sections: {}; camber {} %, {}\n", sections.size(),
+                       RangeText(sections, camber_percent),
+                       twists.empty() ? "no twist" : fmt::format("twist {} deg", twists));
   }
   PrintRigs(report.sail.sections.rigs, out);
   for (const std::string& note : report.sail.sections.notes) {
-    WriteFormatted(out, "section_note: {}\n", note);
+    out << fmt::format("section_note: {}\n", note);
   }
   for (const MissingSection& missing : report.sail.sections.missing) {
-    WriteFormatted(out, "section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
+    out << fmt::format("section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
   }
   for (const SailSurface& surface : report.sail.surfaces) {
-    WriteFormatted(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
-                   surface.area_m2, 1e3 * surface.fit.distance_m.rms);
+    out << fmt::format("surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
+                       surface.area_m2, 1e3 * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : report.freeform.surfaces) {
-    WriteFormatted(out, "surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
-                   ShownName(part.part), SizeText(part.surface), 1e3 * part.surface.distance_m.rms,
-                   1e3 * part.surface.rms_sigma_m);
+    out << fmt::format("surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
+                       ShownName(part.part), SizeText(part.surface),
+                       1e3 * part.surface.distance_m.rms, 1e3 * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
-    for (const std::string& note : *notes) WriteFormatted(out, "surface_note: {}\n", note);
+    for (const std::string& note : *notes) out << fmt::format("surface_note: {}\n", note);
   }
 }
 
@@ -160,7 +159,7 @@ std::string ErrorText(const Statistics& statistics) {
 void PrintRigs(const std::vector<RigNumbers>& rigs, std::ostream& out) {
   for (const RigNumbers& rig : rigs) {
     const std::string text = RigText(rig);
-    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
+    if (!text.empty()) out << fmt::format("rig: {}\n", text);
   }
 }
 
@@ -218,37 +217,35 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   }
   out << '\n';
   if (metrics.reconstruction_ratio) {
-    WriteFormatted(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
+    out << fmt::format("reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
   }
   if (metrics.sail_reconstruction_ratio) {
     const double ratio = *metrics.sail_reconstruction_ratio;
     const int num_markers = *metrics.num_sail_markers;
-    WriteFormatted(out, "sail_reconstruction_ratio: {:.4g} ({:.0f} of {} markers)\n", ratio,
-                   ratio * num_markers, num_markers);
+    out << fmt::format("sail_reconstruction_ratio: {:.4g} ({:.0f} of {} markers)\n", ratio,
+                       ratio * num_markers, num_markers);
   }
   const ModelMetrics& model = report.model_metrics;
-  WriteFormatted(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
-  WriteFormatted(out, "central_image_name: {}\n", model.central_image_name);
-  WriteFormatted(out, "central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
-  WriteFormatted(out, "area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
-  WriteFormatted(out, "area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
-  WriteFormatted(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
-  WriteFormatted(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
-  WriteFormatted(out, "scale_spread_over_markers: {:.3f} %\n",
-                 100.0 * report.scale.relative_spread);
+  out << fmt::format("reprojection_error_px: {}\n", ErrorText(model.error_px));
+  out << fmt::format("central_image_name: {}\n", model.central_image_name);
+  out << fmt::format("central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
+  out << fmt::format("area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
+  out << fmt::format("area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
+  out << fmt::format("side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
+  out << fmt::format("scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
+  out << fmt::format("scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
   PrintScaleAudit(report.scale, report.audit, out);
   if (!report.known_points.points.empty()) {
-    WriteFormatted(out, "known_points: {}\n", KnownPointsText(report.known_points));
+    out << fmt::format("known_points: {}\n", KnownPointsText(report.known_points));
   }
   PrintSail(report, out);
-  WriteFormatted(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(),
-                 box_m.z());
+  out << fmt::format("bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
 }
 
 void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out) {
   if (!(uncertainty.rolling_shutter_sigma_s > 0)) return;
-  WriteFormatted(out, "rolling_shutter_ms: {:.2f} +- {:.2f}\n", 1e3 * uncertainty.rolling_shutter_s,
-                 1e3 * uncertainty.rolling_shutter_sigma_s);
+  out << fmt::format("rolling_shutter_ms: {:.2f} +- {:.2f}\n", 1e3 * uncertainty.rolling_shutter_s,
+                     1e3 * uncertainty.rolling_shutter_sigma_s);
 }
 
 }  // namespace velamap
