@@ -23,7 +23,6 @@
 #include "exporters/shape/shape_transform.h"
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
-#include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/log.h"
 #include "importer/base/replacement.h"

@@ -10,7 +10,6 @@
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/surface/surface_attempt.h"
 #include "importer/base/atomic_output.h"
-#include "importer/base/error.h"
 #include "importer/geometry/units.h"
 #include "importer/text/csv.h"
 

@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "importer/base/error.h"
-
 namespace velamap {
 namespace {
 

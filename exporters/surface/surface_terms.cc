@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/ids.h"

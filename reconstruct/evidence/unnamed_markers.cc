@@ -5,7 +5,6 @@
 #include <set>
 
 #include "importer/base/statistics.h"
-#include "importer/camera/camera_projection.h"
 
 namespace velamap {
 namespace {

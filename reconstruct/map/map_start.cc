@@ -1,7 +1,6 @@
 #include "reconstruct/map/map_start.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include <Eigen/Geometry>

@@ -7,7 +7,6 @@
 #include <map>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 

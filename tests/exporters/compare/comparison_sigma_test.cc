@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include "tests/exporters/compare/example_comparison.h"
 

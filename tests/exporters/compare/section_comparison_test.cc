@@ -8,9 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "exporters/compare/comparison.h"
-#include "exporters/compare/comparison_sigma.h"
 #include "tests/exporters/compare/example_comparison.h"
-#include "tests/exporters/example_covariance.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
 #include "importer/base/error.h"

@@ -1,6 +1,5 @@
 #include "exporters/compare/shape_likeness.h"
 
-#include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>

@@ -1,6 +1,5 @@
 #include "exporters/sail/section_spline.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -6,7 +6,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
-#include "importer/camera/camera_projection.h"
 #include "importer/geometry/units.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/render/board_renderer.h"

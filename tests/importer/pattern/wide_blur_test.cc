@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <opencv2/core.hpp>
 
 #include "importer/pattern/pattern_fit.h"
 #include "tests/importer/refine/marker_grid.h"

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <opencv2/core.hpp>
 
 #include "importer/pattern/pattern_fit.h"
 #include "importer/refine/corner_refinement.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <ceres/crs_matrix.h>

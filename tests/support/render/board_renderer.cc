@@ -4,9 +4,7 @@
 #include <random>
 
 #include <Eigen/Geometry>
-#include <opencv2/imgproc.hpp>
 
-#include "importer/camera/camera_projection.h"
 #include "importer/geometry/units.h"
 #include "tests/support/render/picture_effects.h"
 

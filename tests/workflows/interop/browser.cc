@@ -9,7 +9,6 @@
 
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 namespace velamap {
 namespace {

@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
 
-#include "importer/camera/camera_projection.h"
 #include "importer/database/colmap_database.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"

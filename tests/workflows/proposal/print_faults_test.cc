@@ -1,7 +1,6 @@
 #include "workflows/proposal/print_faults.h"
 
 #include <gmock/gmock.h>
-#include <opencv2/imgproc.hpp>
 
 #include "importer/layout/dictionary.h"
 #include "tests/support/render/marker_renderer.h"
