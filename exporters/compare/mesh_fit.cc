@@ -7,6 +7,7 @@
 
 #include "exporters/compare/closest_points.h"
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/shape/common_corners.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 
@@ -15,24 +16,6 @@ namespace {
 
 constexpr double kAlsoFits = 1.2;       // largest ratio of the costs of poses that fit equally well
 constexpr double kOtherPose_rad = 0.1;  // least rotation between different poses
-
-struct Corners {
-  std::vector<CornerId> ids;
-  std::vector<Eigen::Vector3d> x_in_shape_m;
-};
-
-Corners CollectCorners(const MarkerShape& shape) {
-  Corners corners;
-  for (const ShapeMarker& marker : shape.markers) {
-    for (int corner = 1; corner <= kNumCorners; ++corner) {
-      const auto& x = marker.x_in_shape_m[static_cast<std::size_t>(corner)];
-      if (!x) continue;
-      corners.ids.push_back({marker.marker_id, corner});
-      corners.x_in_shape_m.push_back(*x);
-    }
-  }
-  return corners;
-}
 
 void AddNotes(const std::vector<SurfacePose>& fits, double zero_m, Alignment* alignment) {
   const SurfacePose& best = fits.front();
@@ -63,7 +46,7 @@ void AddNotes(const std::vector<SurfacePose>& fits, double zero_m, Alignment* al
   }
 }
 
-Alignment DescribeFit(const std::vector<SurfacePose>& fits, const Corners& corners,
+Alignment DescribeFit(const std::vector<SurfacePose>& fits, const CommonCorners& corners,
                       const MeshDistance& mesh) {
   Alignment alignment;
   alignment.method = AlignmentMethod::kBestFit;
@@ -101,7 +84,7 @@ Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
         fmt::format("--align {}: the reference is a surface without markers; give best_fit or none",
                     AlignmentMethodName(options.method)));
   }
-  const Corners corners = CollectCorners(shape);
+  const CommonCorners corners = FindCommonCorners(shape, shape);  // all
   if (corners.ids.size() < kMinPointsOverSurface) {
     throw DataError(
         fmt::format("{} marker corners are too few for a best fit to a surface, which needs {}",
