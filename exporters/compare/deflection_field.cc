@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "exporters/compare/surface_noise.h"
+#include "exporters/compare/comparison_sigma.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -12,6 +12,36 @@
 
 namespace velamap {
 namespace {
+
+// The noise of a surface that is compared, from the joint covariance of the markers that it was
+// fitted to, so that it agrees with the sigmas of the markers themselves.
+class SurfaceNoise {
+ public:
+  // `fit` belongs to the markers of the shape or of its reference (`whose`), in the frame of the
+  // reference. `covariance` is that of its corners, in its own frame. Both must outlive this.
+  SurfaceNoise(const FittedSurface& fit, ComparedShape whose,
+               const AlignmentSensitivity& sensitivity, const PointCovariance& covariance)
+      : fit_(fit), noise_(sensitivity, whose, covariance) {}
+
+  // Variance of the surface at a place along a unit vector: from the noise of its markers, from
+  // what this does to the alignment, and from the smoothing (SurfaceDependence::VarianceWith).
+  // Nothing if a sigma that it depends on is unknown, or if the surface interpolates.
+  std::optional<double> VarianceAt(double u, double v, const Eigen::Vector3d& direction) const {
+    const std::optional<SurfaceDependence> dependence = DependenceAt(fit_, u, v);
+    if (!dependence) return std::nullopt;
+    CornerGradient own;
+    for (std::size_t k = 0; k < fit_.points.size(); ++k) {
+      own[fit_.points[k]] = dependence->point_weights[static_cast<Eigen::Index>(k)] * direction;
+    }
+    const auto of_markers_m2 = noise_.VarianceAt(EvaluatePoint(fit_.surface, u, v), direction, own);
+    if (!of_markers_m2) return std::nullopt;
+    return dependence->VarianceWith(*of_markers_m2);
+  }
+
+ private:
+  const FittedSurface& fit_;
+  const AlignedNoise noise_;
+};
 
 std::optional<double> Sigma(const std::optional<double>& variance_m2,
                             const std::optional<double>& other_variance_m2) {
