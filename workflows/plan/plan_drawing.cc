@@ -30,7 +30,6 @@ class Panel {
   Eigen::Vector2d operator()(const Eigen::Vector2d& point_m) const {
     return origin_mm_ + mm_per_m_ * Eigen::Vector2d(point_m.x(), -point_m.y());
   }
-  double mm_per_m() const { return mm_per_m_; }
 
  private:
   double mm_per_m_ = 1.0;
