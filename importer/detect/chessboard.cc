@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,47 +30,26 @@ constexpr double kWindowOfSquare = 0.4;
 // 12 px. A blurred edge needs a wider window; the shift then stays far below a sigma.
 constexpr double kMaxWindowPx = 12.0, kMaxWindowOfEdgeWidth = 2.0;
 
-// The corners in the image, row by row.
-struct CornerGrid {
-  int num_columns = 0, num_rows = 0;
-  std::vector<cv::Point2f> corners_px;
-
-  const cv::Point2f& At(int column, int row) const {
-    return corners_px[static_cast<std::size_t>(row * num_columns + column)];
-  }
-};
-
-CornerGrid MirroredGrid(const CornerGrid& grid) {
-  CornerGrid mirrored{grid.num_columns, grid.num_rows, {}};
-  for (int row = grid.num_rows - 1; row >= 0; --row) {
-    for (int column = 0; column < grid.num_columns; ++column) {
-      mirrored.corners_px.push_back(grid.At(column, row));
-    }
-  }
-  return mirrored;
-}
+// The corners in the image, as (row, column).
+using CornerGrid = cv::Mat_<cv::Point2f>;
 
 CornerGrid QuarterTurned(const CornerGrid& grid) {
-  CornerGrid turned{grid.num_rows, grid.num_columns, {}};
-  for (int column = 0; column < grid.num_columns; ++column) {
-    for (int row = grid.num_rows - 1; row >= 0; --row) {
-      turned.corners_px.push_back(grid.At(column, row));
-    }
-  }
+  CornerGrid turned;
+  cv::rotate(grid, turned, cv::ROTATE_90_CLOCKWISE);
   return turned;
 }
 
 // Whether the turn from columns to rows is opposite to the turn from x to y of the image.
 bool IsMirrored(const CornerGrid& grid) {
-  const cv::Point2f x = grid.At(grid.num_columns - 1, 0) - grid.At(0, 0);
-  const cv::Point2f y = grid.At(0, grid.num_rows - 1) - grid.At(0, 0);
+  const cv::Point2f x = grid(0, grid.cols - 1) - grid(0, 0);
+  const cv::Point2f y = grid(grid.rows - 1, 0) - grid(0, 0);
   return x.cross(y) < 0;
 }
 
 // Grey level in the middle of the square whose first corner is in this column and row.
 double GrayOfSquare(const cv::Mat& gray, const CornerGrid& grid, int column, int row) {
-  return NearestGray(gray, 0.25F * (grid.At(column, row) + grid.At(column + 1, row) +
-                                    grid.At(column, row + 1) + grid.At(column + 1, row + 1)));
+  return NearestGray(gray, 0.25F * (grid(row, column) + grid(row, column + 1) +
+                                    grid(row + 1, column) + grid(row + 1, column + 1)));
 }
 
 bool BeginsDark(const cv::Mat& gray, const CornerGrid& grid) {
@@ -80,19 +58,19 @@ bool BeginsDark(const cv::Mat& gray, const CornerGrid& grid) {
 
 // How well the columns run to the right and the rows downwards: at most 2.
 double Uprightness(const CornerGrid& grid) {
-  const cv::Point2f x = grid.At(grid.num_columns - 1, 0) - grid.At(0, 0);
-  const cv::Point2f y = grid.At(0, grid.num_rows - 1) - grid.At(0, 0);
+  const cv::Point2f x = grid(0, grid.cols - 1) - grid(0, 0);
+  const cv::Point2f y = grid(grid.rows - 1, 0) - grid(0, 0);
   return x.x / cv::norm(x) + y.y / cv::norm(y);
 }
 
 // Turns the grid so that its first square is dark, if any turn does that. Of several such turns,
 // chooses the most upright one.
 CornerGrid Oriented(const cv::Mat& gray, CornerGrid grid) {
-  if (IsMirrored(grid)) grid = MirroredGrid(grid);
+  if (IsMirrored(grid)) cv::flip(grid.clone(), grid, 0);
   std::vector<CornerGrid> turns;
   CornerGrid turned = grid;
   for (int quarter = 0; quarter < 4; ++quarter, turned = QuarterTurned(turned)) {
-    if (turned.num_columns == grid.num_columns) turns.push_back(turned);
+    if (turned.cols == grid.cols) turns.push_back(turned);
   }
   const auto light = std::stable_partition(
       turns.begin(), turns.end(), [&](const CornerGrid& turn) { return BeginsDark(gray, turn); });
@@ -117,8 +95,8 @@ std::vector<int> BlockBegins(int num) {
 double SquareSidePx(const CornerGrid& grid, int column, int row) {
   double side_px = std::numeric_limits<double>::infinity();
   const auto try_neighbor = [&](int x, int y) {
-    if (x < 0 || y < 0 || x >= grid.num_columns || y >= grid.num_rows) return;
-    side_px = std::min(side_px, cv::norm(grid.At(x, y) - grid.At(column, row)));
+    if (x < 0 || y < 0 || x >= grid.cols || y >= grid.rows) return;
+    side_px = std::min(side_px, cv::norm(grid(y, x) - grid(row, column)));
   };
   try_neighbor(column - 1, row);
   try_neighbor(column + 1, row);
@@ -135,24 +113,23 @@ CornerGrid Refined(const cv::Mat& gray, const CornerGrid& grid, double edge_widt
   const cv::TermCriteria criteria(cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER,
                                   kMaxIterations, kLeastStepPx);
   const double max_window_px = std::max(kMaxWindowPx, kMaxWindowOfEdgeWidth * edge_width_px);
-  CornerGrid refined{grid.num_columns, grid.num_rows, {}};
-  for (int row = 0; row < grid.num_rows; ++row) {
-    for (int column = 0; column < grid.num_columns; ++column) {
+  CornerGrid refined(grid.size());
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.cols; ++column) {
       const double of_square_px = kWindowOfSquare * SquareSidePx(grid, column, row);
       const int half_window_px =
           std::max(kMinHalfWindowPx, cvRound(std::min(max_window_px, of_square_px)));
-      std::vector<cv::Point2f> corner_px{grid.At(column, row)};
+      std::vector<cv::Point2f> corner_px{grid(row, column)};
       cv::cornerSubPix(gray, corner_px, {half_window_px, half_window_px}, {-1, -1}, criteria);
-      refined.corners_px.push_back(corner_px[0]);
+      refined(row, column) = corner_px[0];
     }
   }
   return refined;
 }
 
 double EdgeWidthPx(const cv::Mat& gray, const CornerGrid& grid) {
-  const cv::Scalar sharpness =
-      cv::estimateChessboardSharpness(gray, {grid.num_columns, grid.num_rows}, grid.corners_px);
-  return sharpness[0];
+  const std::vector<cv::Point2f> corners_px(grid.begin(), grid.end());
+  return cv::estimateChessboardSharpness(gray, grid.size(), corners_px)[0];
 }
 
 }  // namespace
@@ -181,12 +158,13 @@ std::string ChessboardName(const Chessboard& board) {
 
 FrameDetections DetectChessboard(const Chessboard& board, const Frame& frame) {
   FrameDetections detections{frame.image_name, frame.frame_number, frame.time_s, {}, {}};
-  CornerGrid grid{board.num_columns, board.num_rows, {}};
-  if (!cv::findChessboardCornersSB(frame.gray, {board.num_columns, board.num_rows}, grid.corners_px,
+  std::vector<cv::Point2f> found_px;
+  if (!cv::findChessboardCornersSB(frame.gray, {board.num_columns, board.num_rows}, found_px,
                                    cv::CALIB_CB_NORMALIZE_IMAGE)) {
     return detections;
   }
-  grid = Oriented(frame.gray, std::move(grid));
+  CornerGrid grid =
+      Oriented(frame.gray, CornerGrid(board.num_rows, board.num_columns, found_px.data()));
   const double edge_width_px = EdgeWidthPx(frame.gray, grid);
   grid = Refined(frame.gray, grid, edge_width_px);
   const double sigma_px = kSigmaOfEdgeWidth * edge_width_px;
@@ -196,8 +174,8 @@ FrameDetections DetectChessboard(const Chessboard& board, const Frame& frame) {
       MarkerDetection marker;
       marker.marker_id = static_cast<int>(detections.markers.size());
       const std::array<cv::Point2f, kNumCorners> corners_px = {
-          grid.At(column, row), grid.At(column + 1, row), grid.At(column + 1, row + 1),
-          grid.At(column, row + 1)};
+          grid(row, column), grid(row, column + 1), grid(row + 1, column + 1),
+          grid(row + 1, column)};
       for (std::size_t c = 0; c < corners_px.size(); ++c) {
         marker.corners_in_image_px[c] = {corners_px[c].x + kShiftPx, corners_px[c].y + kShiftPx};
       }
