@@ -19,7 +19,6 @@ constexpr double kMaxScaleSigmas = 3.0;
 // larger change comes from a wrong unit or marker_length.
 constexpr double kMaxGrowth = 0.07;
 
-// The known points of the layout that are in the shape.
 struct KnownPointsInShape {
   std::vector<std::size_t> known_idxs;  // ascending indices into the known points of the layout
   DatumPoints points;                   // in the order of `known_idxs`

@@ -177,7 +177,6 @@ bool HasTilts(const SortedInput& sorted) {
                      [](const auto& entry) { return !entry.second.corners_in_shape_m.empty(); });
 }
 
-// A smooth surface and the terms of its fit.
 struct SurfaceFit {
   SmoothSurface smooth;
   std::vector<SurfaceTerm> terms;

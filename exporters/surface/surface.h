@@ -65,7 +65,6 @@ struct SurfaceResidual {
   bool is_used = false;        // false for markers outside the edge, which the fit ignores
 };
 
-// A point of an edge of the surface.
 struct SurfaceEdgePoint {
   std::string edge;  // luff, leech, foot or head
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();

@@ -27,7 +27,6 @@ struct PrintSheetOptions {
 
 OptionGroup DescribeOptions(PrintSheetOptions* options);
 
-// A marker to be printed.
 struct PrintedMarker {
   int marker_id = 0;
   double length_mm = 0.0;  // outer edge of the black square

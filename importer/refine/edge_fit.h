@@ -87,7 +87,6 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
 // `tolerance_px`. False with too few samples or a singular system.
 bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px, EdgeFit* fit);
 
-// The uncertainty of the place of a fitted edge.
 struct EdgeUncertainty {
   // Covariance of offset and slope (px^2) for noise of one grey level.
   Eigen::Matrix2d place_covariance = Eigen::Matrix2d::Zero();
