@@ -1,8 +1,8 @@
 #include "importer/print/paper.h"
 
-#include <algorithm>
+#include <strings.h>
+
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
@@ -28,19 +28,14 @@ constexpr std::array<NamedPaper, 10> kPapers = {{{"A4", 210, 297},
                                                  {"Legal", 215.9, 355.6},
                                                  {"Tabloid", 279.4, 431.8}}};
 
-bool IsSame(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
-}
-
 bool IsSide(double side_mm) { return side_mm >= kMinPaper_mm && side_mm <= kMaxPaper_mm; }
 
 }  // namespace
 
 Paper ParsePaper(const std::string& text, const std::string& option) {
   for (const NamedPaper& paper : kPapers) {
-    if (IsSame(text, paper.name)) return {paper.name, paper.width_mm, paper.height_mm};
+    if (strcasecmp(text.c_str(), paper.name) == 0)
+      return {paper.name, paper.width_mm, paper.height_mm};
   }
   Paper paper{text, 0, 0};
   const std::size_t times = text.find('x');
