@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "importer/detect/marker_search.h"
-
 namespace velamap {
 
 bool FitsIn(const Box& box, const cv::Size& size, double margin_px) {
@@ -18,10 +16,6 @@ cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px) {
   const cv::Point max(static_cast<int>(std::ceil(box.max.x() + reach_px)) + 1,
                       static_cast<int>(std::ceil(box.max.y() + reach_px)) + 1);
   return cv::Rect(min, max) & cv::Rect({0, 0}, size);
-}
-
-cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
-  return PixelsAround(box, size, margin_px + kSearchReachPx);
 }
 
 double TotalAreaPx(const std::vector<cv::Rect>& regions) {

@@ -17,9 +17,6 @@ bool FitsIn(const Box& box, const cv::Size& size, double margin_px);
 // The pixels of the image that are at most `reach_px` from the box, in each direction.
 cv::Rect PixelsAround(const Box& box, const cv::Size& size, double reach_px);
 
-// The region to search for a marker whose place is known to `margin_px`.
-cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
-
 double TotalAreaPx(const std::vector<cv::Rect>& regions);  // px^2; overlaps count more than once
 
 // The fixed cost of searching a region, in pixels.

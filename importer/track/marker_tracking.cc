@@ -33,7 +33,7 @@ void LocateOrAddRegion(const FrameSearch& search, int marker_id, const TrackPred
   const Box box = BoundingBox(prediction.corners_px);
   if (!FitsIn(box, search.image_size, prediction.margin_px)) return;
   if (!AddLocated(search, marker_id, prediction.corners_px, prediction.margin_px, quads)) {
-    regions->push_back(RegionAround(box, search.image_size, prediction.margin_px));
+    regions->push_back(PixelsAround(box, search.image_size, prediction.margin_px + kSearchReachPx));
   }
 }
 
