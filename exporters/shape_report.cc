@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -31,10 +29,6 @@ MetricTable RigTable(const std::vector<RigNumbers>& rigs) {
   return table;
 }
 
-void AppendTexts(const char* key, const std::vector<std::string>& texts, MetricsReport* report) {
-  if (!texts.empty()) Append({{key, fmt::format("{}", fmt::join(texts, "; "))}}, report);
-}
-
 }  // namespace
 
 void AddEstimate(const std::string& name, const std::string& unit,
@@ -46,15 +40,15 @@ void AddEstimate(const std::string& name, const std::string& unit,
 
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report) {
   Append({{"frame_name", frame.name}, {"frame_description", frame.description}}, report);
-  AppendTexts("frame_reasons", frame.reasons, report);
+  AddTexts("frame_reasons", frame.reasons, &report->metrics);
 }
 
 void AddMetrics(const SailShape& sail, MetricsReport* report) {
-  AppendTexts("section_notes", sail.sections.notes, report);
+  AddTexts("section_notes", sail.sections.notes, &report->metrics);
   if (MetricTable rigs = RigTable(sail.sections.rigs); !rigs.rows.empty()) {
     report->tables.push_back(std::move(rigs));
   }
-  AppendTexts("surface_notes", sail.surface_notes, report);
+  AddTexts("surface_notes", sail.surface_notes, &report->metrics);
   if (sail.surfaces.empty()) return;
   MetricTable table{"surfaces", true, {}};
   for (const SailSurface& surface : sail.surfaces) {
@@ -66,7 +60,7 @@ void AddMetrics(const SailShape& sail, MetricsReport* report) {
 }
 
 void AddMetrics(const FreeformShape& freeform, MetricsReport* report) {
-  AppendTexts("freeform_notes", freeform.notes, report);
+  AddTexts("freeform_notes", freeform.notes, &report->metrics);
   if (freeform.surfaces.empty()) return;
   MetricTable table{"freeform_surfaces", true, {}};
   for (const PartSurface& part : freeform.surfaces) {

@@ -24,9 +24,7 @@ void AddAlignment(const Alignment& alignment, MetricsReport* report) {
   Metrics& metrics = report->metrics;
   metrics.push_back({"alignment", AlignmentMethodName(alignment.method)});
   metrics.push_back({"alignment_by", alignment.description});
-  if (!alignment.notes.empty()) {
-    metrics.push_back({"alignment_note", fmt::format("{}", fmt::join(alignment.notes, "; "))});
-  }
+  AddTexts("alignment_note", alignment.notes, &metrics);
   if (alignment.method != AlignmentMethod::kNone) {
     metrics.push_back({"alignment_residual_mm", InMm(alignment.residual_m)});
   }
@@ -135,10 +133,7 @@ void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
 }
 
 void AddMetrics(const SurfaceComparison& comparison, MetricsReport* report) {
-  if (!comparison.notes.empty()) {
-    report->metrics.push_back(
-        {"surface_note", fmt::format("{}", fmt::join(comparison.notes, "; "))});
-  }
+  AddTexts("surface_note", comparison.notes, &report->metrics);
   MetricTable table{"surfaces", true, {}};
   for (const SurfaceDeviation& part : comparison.parts) {
     table.rows.push_back({{"part", part.part}, {"surface_distance_mm", InMm(part.statistics_m)}});
@@ -152,10 +147,7 @@ void AddMetrics(const SectionComparison& comparison, MetricsReport* report) {
                                              [](const auto& d) { return d.IsSignificant(); });
   report->metrics.push_back({"section_frame", comparison.frame_name});
   report->metrics.push_back({"num_significant_section_numbers", static_cast<int>(num_significant)});
-  if (!comparison.notes.empty()) {
-    report->metrics.push_back(
-        {"section_note", fmt::format("{}", fmt::join(comparison.notes, "; "))});
-  }
+  AddTexts("section_note", comparison.notes, &report->metrics);
   MetricTable table{"section_differences", true, {}};
   for (const SectionDifference& d : differences) {
     Metrics row = {{"part", d.part},   {"section", d.section},     {"number", d.number},

@@ -95,6 +95,10 @@ Statistics Scaled(double factor, Statistics statistics) {
   return statistics;
 }
 
+void AddTexts(const std::string& key, const std::vector<std::string>& texts, Metrics* metrics) {
+  if (!texts.empty()) metrics->push_back({key, fmt::format("{}", fmt::join(texts, "; "))});
+}
+
 void PrintMetrics(const MetricsReport& report, std::ostream& out) {
   for (const Metric& figure : Figures(report.metrics)) {
     out << figure.key << ": " << Text(figure.value) << '\n';

@@ -33,6 +33,9 @@ struct MetricTable {
 // The statistics of all values times a positive factor, such as a change of unit.
 Statistics Scaled(double factor, Statistics statistics);
 
+// Adds the texts with semicolons between them; nothing without any.
+void AddTexts(const std::string& key, const std::vector<std::string>& texts, Metrics* metrics);
+
 struct MetricsReport {
   Metrics metrics;
   std::vector<MetricTable> tables;
