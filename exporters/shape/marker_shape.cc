@@ -66,10 +66,7 @@ void SetCenter(ShapeMarker* marker) {
 }
 
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id) {
-  const auto it =
-      std::lower_bound(shape.markers.begin(), shape.markers.end(), marker_id,
-                       [](const ShapeMarker& marker, int id) { return marker.marker_id < id; });
-  return it != shape.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
+  return FindMarkerById(shape.markers, marker_id);
 }
 
 const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id) {

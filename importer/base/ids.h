@@ -7,8 +7,10 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "importer/base/error.h"
 
@@ -38,6 +40,15 @@ struct CornerId {
     return a.marker_id != b.marker_id ? a.marker_id < b.marker_id : a.corner < b.corner;
   }
 };
+
+// The marker of that id in a list by ascending id; null without one.
+template <typename Marker>
+const Marker* FindMarkerById(const std::vector<Marker>& markers, int marker_id) {
+  const auto it =
+      std::lower_bound(markers.begin(), markers.end(), marker_id,
+                       [](const Marker& marker, int id) { return marker.marker_id < id; });
+  return it != markers.end() && it->marker_id == marker_id ? &*it : nullptr;
+}
 
 using Rgb = std::array<std::uint8_t, 3>;
 

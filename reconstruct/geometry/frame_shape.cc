@@ -1,6 +1,5 @@
 #include "reconstruct/geometry/frame_shape.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "reconstruct/geometry/marker_pose.h"
@@ -17,13 +16,6 @@ double RmsDistance(const MarkerPoints& a, const MarkerPoints& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
   return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-const FrameMarker* FrameShape::Find(int marker_id) const {
-  const auto it =
-      std::lower_bound(markers.begin(), markers.end(), marker_id,
-                       [](const FrameMarker& marker, int id) { return marker.marker_id < id; });
-  return it != markers.end() && it->marker_id == marker_id ? &*it : nullptr;
 }
 
 FrameShape EstimateFrameShape(const DatabaseImage& image, const Camera& camera,

@@ -43,8 +43,6 @@ struct FrameShape {
   std::string image_name;
   std::optional<int> frame_number;
   std::vector<FrameMarker> markers;  // by ascending id
-
-  const FrameMarker* Find(int marker_id) const;  // null where not seen
 };
 
 // Estimates the pose of every marker of the image alone, with its own length. Markers without a

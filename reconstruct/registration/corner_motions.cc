@@ -16,13 +16,6 @@ namespace {
 // Over a longer time, a hand-held camera may have reversed its motion.
 constexpr double kLongestStep_s = 0.15;
 
-const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
-  const auto it =
-      std::lower_bound(frame.markers.begin(), frame.markers.end(), marker_id,
-                       [](const MarkerDetection& marker, int id) { return marker.marker_id < id; });
-  return it != frame.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
-}
-
 struct TimedFrame {
   const FrameDetections* detections = nullptr;
   double time_s = 0.0;  // after the frame whose corners' motions are sought
@@ -57,7 +50,7 @@ std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_
   std::vector<double> times_s;
   Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(window.size()));
   for (const TimedFrame& frame : window) {
-    const MarkerDetection* seen = FindMarker(*frame.detections, marker_id);
+    const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker_id);
     if (seen == nullptr) continue;
     places.col(static_cast<Eigen::Index>(times_s.size())) = CornerMean(*seen);
     times_s.push_back(frame.time_s);

@@ -77,7 +77,7 @@ void PoseByCenters(const FrameShape& frame, const ShapePoints& shape, Registered
   std::vector<Eigen::Vector3d> x_in_shape, x_in_cam;
   for (const int marker_id : registered->marker_ids) {
     x_in_shape.push_back(shape.at(marker_id)[0]);
-    x_in_cam.push_back(frame.Find(marker_id)->x_in_cam.front()[0]);
+    x_in_cam.push_back(FindMarkerById(frame.markers, marker_id)->x_in_cam.front()[0]);
   }
   if (x_in_shape.size() < 3 || !HasSpread(x_in_shape)) return;
   registered->cam_from_shape = EstimateRigid3(x_in_shape, x_in_cam);

@@ -62,7 +62,7 @@ double MaxCenterOffset(const Registration& registration, const SyntheticScene& s
     if (!frame.cam_from_shape) continue;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const int marker_id : frame.marker_ids) {
-      const FrameMarker* marker = frames[frame.image_id - 1].Find(marker_id);
+      const FrameMarker* marker = FindMarkerById(frames[frame.image_id - 1].markers, marker_id);
       sum +=
           *frame.cam_from_shape * registration.shape.at(marker_id)[0] - marker->x_in_cam.front()[0];
     }
