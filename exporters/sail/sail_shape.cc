@@ -12,7 +12,6 @@
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
 #include "exporters/sail/surface_sigma.h"
-#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface_attempt.h"
 #include "exporters/surface/surface_csv.h"
 #include "exporters/surface/surface_input.h"

@@ -72,13 +72,6 @@ std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part) {
   return ids;
 }
 
-const LayoutPart* FirstPartWithLines(const Layout& layout) {
-  for (const LayoutPart& part : layout.parts) {
-    if (!part.horizontal.empty()) return &part;
-  }
-  return nullptr;
-}
-
 std::vector<const MarkerLine*> LinesWithEnds(const MarkerShape& shape,
                                              const std::vector<MarkerLine>& lines) {
   std::vector<const MarkerLine*> with_ends;

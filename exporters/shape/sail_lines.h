@@ -20,9 +20,6 @@ Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id);
 // Each id of the part once, in the order of the layout, lines first.
 std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part);
 
-// The first part with horizontal lines; null without any.
-const LayoutPart* FirstPartWithLines(const Layout& layout);
-
 struct LineEnds {
   Eigen::Vector3d first, last;
   Eigen::Vector3d Middle() const { return (first + last) / 2; }

@@ -70,6 +70,13 @@ std::string PartOfMarker(const Layout& layout, int marker_id) {
   return "";
 }
 
+const LayoutPart* FirstPartWithLines(const Layout& layout) {
+  for (const LayoutPart& part : layout.parts) {
+    if (!part.horizontal.empty()) return &part;
+  }
+  return nullptr;
+}
+
 AdjacencyGraph BuildAdjacencyGraph(const Layout& layout) {
   AdjacencyGraph graph;
   for (const LayoutPart& part : layout.parts) {

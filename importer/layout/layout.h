@@ -101,6 +101,9 @@ std::set<int> MarkerIds(const LayoutPart& part);
 // The name of the part that holds the marker, or "" if none does.
 std::string PartOfMarker(const Layout& layout, int marker_id);
 
+// The first part with horizontal lines; null without any.
+const LayoutPart* FirstPartWithLines(const Layout& layout);
+
 using AdjacencyGraph = std::map<int, std::vector<int>>;
 AdjacencyGraph BuildAdjacencyGraph(const Layout& layout);
 

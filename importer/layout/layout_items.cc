@@ -197,10 +197,7 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
   if (frame.kind == FrameKind::kReferencePart && !layout.reference_part) {
     item.Fail("the frame of the reference part needs the key 'reference_part'");
   }
-  const bool has_lines =
-      std::any_of(layout.parts.begin(), layout.parts.end(),
-                  [](const LayoutPart& part) { return !part.horizontal.empty(); });
-  if (frame.kind == FrameKind::kLines && !has_lines) {
+  if (frame.kind == FrameKind::kLines && FirstPartWithLines(layout) == nullptr) {
     item.Fail("the frame by lines needs a part with horizontal lines");
   }
   return frame;

@@ -218,9 +218,8 @@ Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, dou
 
 Placement PlaceLinesOnSail(const SailPlacementOptions& options, const Layout& layout,
                            double sticker_mm) {
-  const auto part = std::find_if(layout.parts.begin(), layout.parts.end(),
-                                 [](const LayoutPart& one) { return !one.horizontal.empty(); });
-  if (part == layout.parts.end()) {
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) {
     throw InputError(
         "--layout_path: the layout has no horizontal lines to place on a sail; give lines, or "
         "leave the layout out");

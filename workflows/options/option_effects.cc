@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/log.h"

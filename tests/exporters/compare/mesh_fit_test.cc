@@ -8,7 +8,6 @@
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/shape_deviation.h"
-#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
 #include "tests/exporters/compare/example_comparison.h"

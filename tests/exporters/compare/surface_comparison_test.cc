@@ -10,7 +10,6 @@
 
 #include "exporters/compare/shape_deviation.h"
 #include "exporters/comparison_page/comparison_ply.h"
-#include "exporters/shape/sail_lines.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"
 
