@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "reconstruct/map/map_refinement.h"
 #include "tests/reconstruct/map/scene_map.h"
 #include "tests/support/test_seed.h"
 
