@@ -142,8 +142,8 @@ class Mapper {
     FindOftenSeen();
     images_ = Only(std::move(images_), often_seen_);
     if (adjustment_.find_camera) {
-      cameras_ = FindUnknownCameras(images_, cameras_, layout_, CornerErrorsOf(images_, formation_),
-                                    registration_, adjustment_);
+      cameras_ = FindUnknownCameras(cameras_, layout_, CornerErrorsOf(images_, formation_),
+                                    registration_, adjustment_, &images_);
     }
   }
 

@@ -7,6 +7,7 @@
 #include "importer/base/error.h"
 #include "importer/base/log.h"
 #include "reconstruct/adjust/camera_adjustment.h"
+#include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/camera_search.h"
 
 namespace velamap {
@@ -36,22 +37,23 @@ bool HasFisheye(const std::map<CameraId, Camera>& cameras) {
 
 }  // namespace
 
-std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& images,
-                                              const std::map<CameraId, Camera>& guesses,
+std::map<CameraId, Camera> FindUnknownCameras(const std::map<CameraId, Camera>& guesses,
                                               const Layout& layout,
                                               const CornerErrors& corner_errors,
                                               const RegistrationOptions& registration,
-                                              const MarkerAdjustmentOptions& adjustment) {
+                                              const MarkerAdjustmentOptions& adjustment,
+                                              std::vector<DatabaseImage>* images) {
   LogInfo("no calibration: estimating the camera from the pictures");
   std::map<CameraId, Camera> found;
   try {
-    found = FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
+    found = FindCameras(*images, guesses, layout, corner_errors, registration, adjustment);
   } catch (const DataError& error) {
     throw DataError(error.what() + std::string(kOrWithCalibration));
   }
   for (const auto& [camera_id, camera] : found) {
     CompareWithMetadata(guesses.at(camera_id), camera);
   }
+  CorrectForLensBend(found, images);
   return found;
 }
 

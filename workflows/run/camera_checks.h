@@ -20,14 +20,15 @@ namespace velamap {
 constexpr const char* kOrWithCalibration = "; or import the images with the camera's calibration";
 
 // FindCameras() of reconstruct/camera_search.h. `guesses` are the cameras of a database without a
-// calibration; a focal length that EXIF claims is compared with what the images show. Throws
-// DataError where the images do not tell.
-std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& images,
-                                              const std::map<CameraId, Camera>& guesses,
+// calibration; a focal length that EXIF claims is compared with what the images show. The corners
+// of `images` are moved to where the fit would have found them with these cameras
+// (CorrectForLensBend). Throws DataError where the images do not tell.
+std::map<CameraId, Camera> FindUnknownCameras(const std::map<CameraId, Camera>& guesses,
                                               const Layout& layout,
                                               const CornerErrors& corner_errors,
                                               const RegistrationOptions& registration,
-                                              const MarkerAdjustmentOptions& adjustment);
+                                              const MarkerAdjustmentOptions& adjustment,
+                                              std::vector<DatabaseImage>* images);
 
 // Warns where the images contradict a calibration that has no fisheye model and fit such a model
 // better. `seed` and `adjusted` are the model before and after its marker-aware adjustment.

@@ -10,7 +10,6 @@
 #include "importer/base/log.h"
 #include "importer/base/numbers.h"
 #include "importer/track/frame_detector.h"
-#include "reconstruct/camera/lens_bend_correction.h"
 #include "reconstruct/evidence/unnamed_markers.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/frame_selection.h"
@@ -154,8 +153,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   SeedResult seed;
   seed.corner_errors = CornerErrorsOf(images, database.ReadFormation());
   if (!database.HasCalibration()) {
-    cameras = FindUnknownCameras(images, cameras, layout, seed.corner_errors, options, adjustment);
-    CorrectForLensBend(cameras, &images);
+    cameras = FindUnknownCameras(cameras, layout, seed.corner_errors, options, adjustment, &images);
   }
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
     seed.image_names.push_back(name);
