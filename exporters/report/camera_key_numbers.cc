@@ -18,16 +18,6 @@ constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
 // A parameter is named alone if it explains at least this share of what all parameters explain.
 constexpr double kDecisiveShare = 0.7;
 
-// Advice for a camera found from the pictures. No given calibration can be wrong, so the pictures
-// do not determine the camera. If the geometry is weak, the warning about it is the advice.
-std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
-  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
-  if (weak != warnings.end()) return *weak;
-  return "the camera that was found does not fit all pictures: film from more directions, with "
-         "markers tilted and everywhere in the picture, or give a calibration, which velamap "
-         "camera_calibrator makes";
-}
-
 }  // namespace
 
 ReportStatus LowIsGood(double value, double good, double bad) {
@@ -56,6 +46,14 @@ std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
       "camera_calibrator), or refine it: {}",
       StatusOf(evidence) == ReportStatus::kBad ? "does not belong to" : "does not quite fit", what,
       command);
+}
+
+std::string FoundCameraAdvice(const std::vector<std::string>& warnings) {
+  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
+  if (weak != warnings.end()) return *weak;
+  return "the camera that was found does not fit all pictures: film from more directions, with "
+         "markers tilted and everywhere in the picture, or give a calibration, which velamap "
+         "camera_calibrator makes";
 }
 
 ReportStatus StatusOf(const CalibrationEvidence& evidence) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "exporters/report/report_key_numbers.h"
@@ -19,6 +20,11 @@ ReportStatus StatusOf(const CalibrationEvidence& evidence);
 
 // Names the parameter that explains most, and the options that refine it.
 std::string CalibrationAdvice(const CalibrationEvidence& evidence);
+
+// The same for a camera that was found from the pictures. No given calibration can be wrong, so the
+// pictures do not determine the camera. If the geometry is weak, the warning about it is the
+// advice.
+std::string FoundCameraAdvice(const std::vector<std::string>& warnings);
 
 // Whether another calibration would explain the residuals. None without the marker-aware
 // adjustment, which tests it. Where no calibration was given, the advice is about the pictures.

@@ -134,7 +134,7 @@ class Checker {
   }
 
  private:
-  bool MeasuresPrecision() const { return options_.camera && options_.layout; }
+  bool MeasuresPrecision() const { return options_.layout.has_value(); }
 
   void Detect(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
               const ArucoDetectionOptions& detection) {

@@ -17,9 +17,10 @@
 namespace velamap {
 
 struct ClipCheckOptions {
-  std::string image_path;        // folder of images, or a video file
-  std::optional<Layout> layout;  // nothing: the dictionary is found by trying
-  std::optional<Camera> camera;  // with a layout: the precision is found by a reconstruction
+  std::string image_path;  // folder of images, or a video file
+  // With it, a reconstruction finds the precision; nothing: the dictionary is found by trying.
+  std::optional<Layout> layout;
+  std::optional<Camera> camera;  // nothing: it is found from the markers if there is a layout
   std::string camera_path;       // for messages only
   // Find where the markers are by a reconstruction, with or without a camera, and propose a layout.
   bool proposes_layout = false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "importer/base/statistics.h"
+#include "importer/camera/calibration_writer.h"
 #include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/model/calibration_evidence.h"
 
@@ -30,6 +31,7 @@ struct ClipPrecision {
   std::vector<std::string> warnings;
   std::vector<std::string> markers_left_out;  // id and reason of those that contradict the layout
   CalibrationEvidence calibration;
+  std::vector<EstimatedCamera> found_cameras;  // without a calibration
 };
 
 struct ClipFacts {
@@ -69,6 +71,11 @@ struct ClipFacts {
   std::optional<ClipPrecision> precision;
   std::string no_precision_because;
   bool has_camera = false;
+
+  // Whether no precision was measured although there are markers: it needs their sizes.
+  bool LacksSizes() const {
+    return !precision && no_precision_because.empty() && !num_frames_of_id.empty();
+  }
 
   // With a proposed layout: markers that are there twice or badly printed, and where the layout is
   // wrong, one line each.

@@ -18,6 +18,7 @@
 #include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
+#include "workflows/run/camera_checks.h"
 
 namespace velamap {
 namespace {
@@ -43,16 +44,21 @@ double Parallax(const Model& model) {
 ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
                                int num_threads) {
   const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
-  const std::vector<DatabaseImage> images = database.ReadImages();
-  const std::map<CameraId, Camera> cameras = database.ReadCameras();
+  std::vector<DatabaseImage> images = database.ReadImages();
+  std::map<CameraId, Camera> cameras = database.ReadCameras();
+  const CornerErrors corner_errors = CornerErrorsOf(images, database.ReadFormation());
   RegistrationOptions registration_options;
-  registration_options.num_threads = num_threads;
+  MarkerAdjustmentOptions adjustment_options;
+  registration_options.num_threads = adjustment_options.num_threads = num_threads;
+  registration_options.has_calibration = database.HasCalibration();
+  adjustment_options.find_camera = !registration_options.has_calibration;
+  if (adjustment_options.find_camera) {
+    cameras = FindUnknownCameras(cameras, layout, corner_errors, registration_options,
+                                 adjustment_options, &images);
+  }
   const Registration registration = RegisterFrames(images, cameras, layout, registration_options);
   const Model seed = MakeSeedModel(registration, images, cameras);
   Model model = seed;
-  MarkerAdjustmentOptions adjustment_options;
-  adjustment_options.num_threads = num_threads;
-  const CornerErrors corner_errors = CornerErrorsOf(images, database.ReadFormation());
   const MarkerAdjustmentSummary summary =
       AdjustWithMarkers(adjustment_options, layout, corner_errors, &model);
   ClipPrecision precision;
@@ -67,6 +73,7 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.steadiness.step =
       ConfirmFocalStep(adjustment_options, layout, corner_errors, &seed, precision.steadiness.step);
   precision.calibration = summary.uncertainty.calibration;
+  for (const auto& [camera_id, camera] : summary.cameras) precision.found_cameras.push_back(camera);
   precision.warnings = summary.warnings;
   if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
     precision.warnings.push_back(std::move(doubt));

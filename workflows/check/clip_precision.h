@@ -9,7 +9,8 @@
 
 namespace velamap {
 
-// Registers and adjusts the images of a database. Throws DataError where they give no shape.
+// Registers and adjusts the images of a database, and finds the cameras before if it has no
+// calibration. Throws DataError where the images give no shape or no cameras.
 ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
                                int num_threads);
 

@@ -140,17 +140,23 @@ class Judge {
   }
 
   void JudgeWithoutPrecision() {
+    if (facts_.LacksSizes()) {
+      reasons_.Check(
+          "depth, zoom and stabilization are not checked without the markers' sizes: give "
+          "--layout_path, or --dictionary and --marker_length");
+    }
     if (facts_.num_frames_of_id.empty() || facts_.no_precision_because.empty()) return;
     reasons_.Bad(fmt::format(
-        "no shape can be reconstructed from these frames: {}; the calibration may be of another "
-        "camera, lens mode or zoom: check it, too",
-        facts_.no_precision_because));
+        "no shape can be reconstructed from these frames: {}{}", facts_.no_precision_because,
+        facts_.has_camera ? "; the calibration may be of another camera, lens mode or zoom: check "
+                            "it, too"
+                          : ""));
   }
 
   void JudgePrecision() {
     if (!facts_.precision) return JudgeWithoutPrecision();
     const ClipPrecision& precision = *facts_.precision;
-    JudgeCalibration(precision);
+    JudgeAgreement(precision);
     const std::string text =
         fmt::format("the camera moves {:.0f} degrees around the object", precision.parallax_deg);
     const std::string remedy = "move sideways by a third of the distance or more";
@@ -162,12 +168,14 @@ class Judge {
     for (const std::string& marker : precision.markers_left_out) {
       reasons_.Check("contradicts the layout: " + marker);
     }
-    for (const std::string& warning : precision.warnings) reasons_.Check(warning);
+    for (const std::string& warning : precision.warnings) {
+      if (warning != camera_advice_) reasons_.Check(warning);
+    }
     JudgeSteadiness(precision.steadiness);
   }
 
-  // A wrong calibration leaves few markers and images that agree, whose residuals say little.
-  void JudgeCalibration(const ClipPrecision& precision) {
+  // A wrong camera leaves few markers and images that agree, whose residuals say little.
+  void JudgeAgreement(const ClipPrecision& precision) {
     constexpr int kManyMarkers = 8;
     const auto num_seen = static_cast<int>(
         std::count_if(facts_.num_frames_of_id.begin(), facts_.num_frames_of_id.end(),
@@ -176,15 +184,29 @@ class Judge {
     if (num_seen >= kManyMarkers &&
         (2 * precision.num_markers < num_seen || 2 * precision.num_images < num_frames)) {
       reasons_.Bad(fmt::format(
-          "only {} of {} markers in {} of {} frames fit together: the calibration does not belong "
-          "to these images (another camera, lens mode or zoom), or the surface moved: calibrate "
-          "this camera as it filmed (velamap camera_calibrator)",
-          precision.num_markers, num_seen, precision.num_images, num_frames));
+          "only {} of {} markers in {} of {} frames fit together: {}", precision.num_markers,
+          num_seen, precision.num_images, num_frames,
+          facts_.has_camera
+              ? "the calibration does not belong to these images (another camera, lens mode or "
+                "zoom), or the surface moved: calibrate this camera as it filmed (velamap "
+                "camera_calibrator)"
+              : "the surface moved, or the lens was zoomed: film again with both still, or give "
+                "--camera_path"));
       return;
     }
+    JudgeCamera(precision);
+  }
+
+  void JudgeCamera(const ClipPrecision& precision) {
     const ReportStatus status = StatusOf(precision.calibration);
-    if (status == ReportStatus::kBad || status == ReportStatus::kCheck) {
-      reasons_.Add(status, CalibrationAdvice(precision.calibration));
+    if (status > ReportStatus::kGood) {
+      camera_advice_ = facts_.has_camera ? CalibrationAdvice(precision.calibration)
+                                         : FoundCameraAdvice(precision.warnings);
+      reasons_.Add(status, camera_advice_);
+    }
+    const auto found = FoundCameraNumber(precision.found_cameras);
+    if (found && found->status > ReportStatus::kGood) {
+      reasons_.Add(found->status, found->value + "; " + found->advice);
     }
   }
 
@@ -194,8 +216,12 @@ class Judge {
     };
     if (const auto& wander = steadiness.wander) {
       reasons_.Add(level(wander->SpoilsShape()), DescribeWander(*wander));
-    } else if (const auto& step = steadiness.step) {
+    } else if (const auto& step = steadiness.step; step && facts_.has_camera) {
       reasons_.Add(level(step->SpoilsShape()), DescribeStep(*step));
+    }
+    if (steadiness.step && !facts_.has_camera) {
+      // No camera explains both settings, so a reconstruction ends here.
+      reasons_.Bad("the camera cannot be found: " + DescribeStep(*steadiness.step));
     }
   }
 
@@ -207,6 +233,7 @@ class Judge {
   }
 
   const ClipFacts& facts_;
+  std::string camera_advice_;  // may repeat a warning
   VerdictReasons reasons_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "exporters/report/camera_key_numbers.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -35,9 +36,10 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
       {{"Input and output",
         {ImagePathOption(paths),
          Common(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                           "calibration of the camera, for the precision or with "
-                           "--proposed_layout_path; the precision needs the markers' sizes, too: "
-                           "--layout_path, or --marker_length and --dictionary")),
+                           "calibration of the camera, for the precision, which needs the "
+                           "markers' sizes, too (--layout_path, or --marker_length and "
+                           "--dictionary), or with --proposed_layout_path; left out: the camera is "
+                           "found from the pictures")),
          Common(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                            "PNG of the frame with most markers, with their outlines and ids; left "
                            "out: none")),
@@ -111,18 +113,9 @@ void PrintPrecision(const ClipPrecision& precision, std::ostream& out) {
                      precision.marker_sigma_mm, precision.num_images, precision.num_markers);
   out << fmt::format("scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
   out << fmt::format("parallax_deg: {:.0f}\n", precision.parallax_deg);
-}
-
-// A clip from one place looks as good as any other in each of its frames.
-void PrintWhatIsNotChecked(const ClipFacts& facts, std::ostream& out) {
-  if (facts.precision || facts.num_frames_of_id.empty() || !facts.no_precision_because.empty()) {
-    return;
+  if (const auto camera = FoundCameraNumber(precision.found_cameras)) {
+    out << fmt::format("camera: {}\n", camera->value);
   }
-  out << fmt::format(
-      "not_checked: depth, for lack of {}: see that the camera moves sideways by a "
-      "third of the distance or more, or give {}\n",
-      facts.has_camera ? "the markers' sizes" : "a calibration",
-      facts.has_camera ? "--layout_path, or --dictionary and --marker_length" : "--camera_path");
 }
 
 void Print(const ClipFacts& facts, std::ostream& out) {
@@ -130,7 +123,8 @@ void Print(const ClipFacts& facts, std::ostream& out) {
   if (const std::string hint = SizeHint(facts); !hint.empty()) {
     out << fmt::format("hint: {}\n", hint);
   }
-  PrintWhatIsNotChecked(facts, out);
+  // A clip from one place, or with a zoom, looks as good as any other in each of its frames.
+  if (facts.LacksSizes()) out << "not_checked: depth, zoom, stabilization\n";
   out << fmt::format("frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
                      facts.num_frames, facts.width_px, facts.height_px);
   if (facts.dictionary.empty()) return;

@@ -24,13 +24,15 @@ SyntheticScene ZoomedSail(double zoom, int num_frames = 32) {
   return scene;
 }
 
-ClipPrecision PrecisionOf(const SyntheticScene& scene) {
+ClipPrecision PrecisionOf(const SyntheticScene& scene, bool is_calibrated = true) {
   const TempDir dir;
   const std::string path = (dir / "clip.db").string();
   {
     ColmapDatabase database(path, ColmapDatabase::Mode::kReadWriteCreate);
     ColmapDatabase::Transaction transaction(&database);
-    const CameraId camera_id = database.AddCamera(scene.camera);
+    const Camera& camera = scene.camera;
+    const CameraId camera_id = database.AddCamera(
+        is_calibrated ? camera : UnknownCamera(camera.width_px, camera.height_px), is_calibrated);
     for (const FrameDetections& frame : scene.frames) database.AddImage(camera_id, frame, "test");
     transaction.Commit();
   }
@@ -59,6 +61,22 @@ TEST(ClipPrecision, ASteadyLensHasNoStep) {
   EXPECT_FALSE(precision.steadiness.step.has_value());
   EXPECT_EQ(precision.num_images, 32);
   EXPECT_EQ(precision.num_markers, 20);
+}
+
+TEST(ClipPrecision, TheCameraIsFoundWithoutACalibration) {
+  const ClipPrecision precision = PrecisionOf(ZoomedSail(1.0), false);
+  EXPECT_FALSE(precision.steadiness.step.has_value());
+  EXPECT_EQ(precision.num_images, 32);
+  ASSERT_EQ(precision.found_cameras.size(), 1u);
+  const EstimatedCamera& found = precision.found_cameras.front();
+  EXPECT_NEAR(found.camera.params[0], 1500.0, 4 * found.sigmas[0]);
+}
+
+TEST(ClipPrecision, AZoomShowsWithoutACalibration) {
+  const ClipPrecision precision = PrecisionOf(ZoomedSail(1.08), false);
+  ASSERT_TRUE(precision.steadiness.step.has_value());
+  EXPECT_NEAR(precision.steadiness.step->after_px / precision.steadiness.step->before_px, 1.08,
+              0.01);
 }
 
 }  // namespace

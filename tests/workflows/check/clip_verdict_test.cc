@@ -7,10 +7,12 @@
 namespace velamap {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 ClipFacts GoodClip() {
   ClipFacts facts;
@@ -24,7 +26,8 @@ ClipFacts GoodClip() {
   facts.white = 210;
   facts.blur_px = 0.8;
   facts.motion_px = 1.0;
-  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}, {}, {}};
+  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}, {}, {}, {}};
+  facts.has_camera = true;
   return facts;
 }
 
@@ -131,6 +134,53 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
     const Verdict verdict = JudgeClip(facts);
     EXPECT_EQ(verdict.level, spoilt.level) << spoilt.word;
     EXPECT_THAT(verdict.reasons, ElementsAre(Field(&VerdictReason::text, HasSubstr(spoilt.word))));
+  }
+}
+
+// No calibration is blamed where none was given, and a zoom ends a reconstruction.
+std::vector<Spoilt> SpoiltWithoutCalibration() {
+  return {{"the camera cannot be found: the focal length changes from 960 to 982 px",
+           ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->precision->steadiness.step = FocalStep{"b.jpg", 1, 960, 982, 30};
+           }},
+          {"the principal point wanders by 20 px", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->precision->steadiness.wander = PrincipalPointWander{20, 960};
+           }},
+          {"fit together: the surface moved, or the lens was zoomed", ReportStatus::kBad,
+           [](ClipFacts* facts) { facts->precision->num_markers = 9; }},
+          {"film from more directions", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             CalibrationEvidence& evidence = facts->precision->calibration;
+             evidence.num_changes = 4;
+             evidence.chi_squared = 1e4;
+             evidence.systematic_px = 0.3;
+             evidence.shape_change_in_sigmas = 20;
+           }},
+          {"the pictures hardly determine the camera", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->precision->found_cameras = {{UnknownCamera(1920, 1080, 1000), {80, 0, 0, 0}}};
+           }},
+          {"from these frames: because", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->precision.reset();
+             facts->no_precision_because = "because";
+           }},
+          {"are not checked without the markers' sizes", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->precision.reset(); }}};
+}
+
+TEST(ClipVerdict, WithoutACalibrationNoneIsBlamed) {
+  for (const Spoilt& spoilt : SpoiltWithoutCalibration()) {
+    ClipFacts facts = GoodClip();
+    facts.has_camera = false;
+    spoilt.spoil(&facts);
+    const Verdict verdict = JudgeClip(facts);
+    EXPECT_EQ(verdict.level, spoilt.level) << spoilt.word;
+    EXPECT_THAT(verdict.reasons,
+                ElementsAre(Field(&VerdictReason::text, AllOf(HasSubstr(spoilt.word),
+                                                              Not(HasSubstr("the calibration"))))));
   }
 }
 

@@ -41,8 +41,17 @@ TEST_F(ClipCheckerTest, FindsTheDictionaryByItself) {
   const ProgramRun run = RunVelamap({"clip_checker", "--image_path", kCube + "images"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_"), HasSubstr("(found by trying: "),
-                             HasSubstr("not_checked: depth, for lack of a calibration"),
-                             Not(HasSubstr("precision: "))));
+                             HasSubstr("not_checked: depth, zoom, stabilization\n"),
+                             Not(HasSubstr("verdict: good")), Not(HasSubstr("precision: "))));
+}
+
+TEST_F(ClipCheckerTest, TheSizesOfTheMarkersReplaceACalibration) {
+  const ProgramRun run = RunVelamap(
+      {"clip_checker", "--image_path", kCube + "images", "--layout_path", kCube + "layout.yml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("precision: "), HasSubstr("parallax_deg: "),
+                    HasSubstr("camera: found; focal length "), Not(HasSubstr("not_checked: "))));
 }
 
 TEST_F(ClipCheckerTest, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
