@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,11 +43,6 @@ int SizeWithId(const std::string& family, int max_id) {
     if (max_id < size) return size;
   }
   return 1000;
-}
-
-std::string SmallestOfFamily(const std::string& family, int max_id) {
-  const int size = SizeWithId(family, max_id);
-  return size == 0 ? family : family.substr(0, family.rfind('_') + 1) + std::to_string(size);
 }
 
 struct Found {
@@ -89,49 +85,79 @@ bool MayBeChance(const std::string& family, const Found& found) {
   return !are_first_ids && found.NumUpTo(max_id) < 2 * num_ids;
 }
 
+using Choice = std::pair<std::string, bool>;  // family, inverted
+
+void CountMarkers(const cv::Mat& gray, const Choice& choice, int border_bits,
+                  ArucoDetectionOptions options, Found* found) {
+  options.error_correction_rate = 0.0;
+  options.inverted = choice.second;
+  const Dictionary dictionary = LoadDictionary(choice.first);
+  for (const MarkerQuad& marker :
+       SearchMarkersAtFirstLook(gray, dictionary, border_bits, options)) {
+    ++found->num_of_id[marker.marker_id];
+  }
+}
+
+// The choices that are unlikely to be chance, by descending number of markers.
+std::vector<std::pair<Choice, Found>> LikelyChoices(const std::map<Choice, Found>& found_by_choice,
+                                                    int num_images) {
+  const double least = std::max<double>(kMinNumMarkers, kMinMarkersPerImage * num_images);
+  std::vector<std::pair<Choice, Found>> likely;
+  for (const auto& [choice, found] : found_by_choice) {
+    if (found.NumUpTo(found.MaxId()) < least || MayBeChance(choice.first, found)) continue;
+    likely.emplace_back(choice, found);
+  }
+  std::stable_sort(likely.begin(), likely.end(), [](const auto& a, const auto& b) {
+    return a.second.NumUpTo(a.second.MaxId()) > b.second.NumUpTo(b.second.MaxId());
+  });
+  if (likely.size() > kMaxNumHints) likely.resize(kMaxNumHints);
+  return likely;
+}
+
 }  // namespace
+
+std::string SmallestOfFamily(const std::string& dictionary, int max_id) {
+  const std::string family = LargestOfFamily(dictionary);
+  const int size = SizeWithId(family, max_id);
+  return size == 0 ? family : family.substr(0, family.rfind('_') + 1) + std::to_string(size);
+}
+
+std::string LargestOfFamily(const std::string& dictionary) {
+  const std::string largest = dictionary.substr(0, dictionary.rfind('_') + 1) + "1000";
+  const bool has_sizes = std::find(kFamilies.begin(), kFamilies.end(), largest) != kFamilies.end();
+  return has_sizes ? largest : dictionary;
+}
 
 std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
                                                 int border_bits,
                                                 const ArucoDetectionOptions& options) {
-  ArucoDetectionOptions strict = options;
-  strict.error_correction_rate = 0.0;
-  std::map<std::pair<std::string, bool>, Found> found_by_choice;
+  std::map<Choice, Found> found_by_choice;
   bool convinced = false;
-  int num_images = 0;
+  std::size_t num_images = 0;
   auto last_said = std::chrono::steady_clock::now();
-  for (; num_images < static_cast<int>(gray_images.size()) && !convinced; ++num_images) {
+  for (; num_images < gray_images.size() && !convinced; ++num_images) {
     if (std::chrono::steady_clock::now() - last_said > kTalkInterval) {
       last_said = std::chrono::steady_clock::now();
       LogInfo("trying all dictionaries: picture {} of {}", num_images + 1, gray_images.size());
     }
-    const cv::Mat& gray = gray_images[static_cast<std::size_t>(num_images)];
     for (const char* family : kFamilies) {
-      const Dictionary dictionary = LoadDictionary(family);
       for (const bool inverted : {false, true}) {
-        strict.inverted = inverted;
         Found& found = found_by_choice[{family, inverted}];
-        for (const MarkerQuad& marker :
-             SearchMarkersAtFirstLook(gray, dictionary, border_bits, strict)) {
-          ++found.num_of_id[marker.marker_id];
-        }
+        CountMarkers(gray_images[num_images], {family, inverted}, border_bits, options, &found);
         convinced |= found.NumMarkers() >= kConvincingNumMarkers && !MayBeChance(family, found);
       }
     }
   }
   std::vector<DictionaryHint> hints;
-  for (const auto& [choice, found] : found_by_choice) {
-    const std::string& family = choice.first;
-    const int max_id = found.MaxId(), num_markers = found.NumUpTo(max_id);
-    if (num_markers < std::max<double>(kMinNumMarkers, kMinMarkersPerImage * num_images)) continue;
-    if (MayBeChance(family, found)) continue;
-    hints.push_back({SmallestOfFamily(family, max_id), choice.second, num_markers, num_images});
+  for (auto& [choice, found] : LikelyChoices(found_by_choice, static_cast<int>(num_images))) {
+    const int num_markers = found.NumUpTo(found.MaxId());
+    // One picture may show few of the ids, and all of them tell the size of the dictionary.
+    for (std::size_t i = num_images; hints.empty() && i < gray_images.size(); ++i) {
+      CountMarkers(gray_images[i], choice, border_bits, options, &found);
+    }
+    hints.push_back({SmallestOfFamily(choice.first, found.MaxId()), choice.second, num_markers,
+                     static_cast<int>(num_images)});
   }
-  std::stable_sort(hints.begin(), hints.end(),
-                   [](const DictionaryHint& a, const DictionaryHint& b) {
-                     return a.num_markers > b.num_markers;
-                   });
-  if (hints.size() > kMaxNumHints) hints.resize(kMaxNumHints);
   return hints;
 }
 

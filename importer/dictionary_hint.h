@@ -16,16 +16,22 @@ struct DictionaryHint {
   std::string dictionary;  // the smallest of its family that contains nearly all detected ids
   bool inverted = false;
   int num_markers = 0;  // of these ids, detected in the images
-  int num_images = 0;   // searched
+  int num_images = 0;   // searched with all dictionaries
 };
 
 // Tries all predefined dictionaries in both polarities, without error correction. Returns at most
 // three, by descending number of detections: those with two or more detections, and at least one in
-// two images, that are unlikely to be chance. Leaves out the remaining images once a dictionary has
-// detected many markers.
+// two images, that are unlikely to be chance. Once a dictionary has detected many markers, only its
+// family is searched for in the remaining images, for their ids.
 std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
                                                 int border_bits,
                                                 const ArucoDetectionOptions& options);
+
+// The predefined dictionaries of a family, such as DICT_4X4_50 to DICT_4X4_1000, begin with the
+// same markers. The smallest one that has the id, and the largest one: of the family of
+// `dictionary`, which is itself where a family has only one.
+std::string SmallestOfFamily(const std::string& dictionary, int max_id);
+std::string LargestOfFamily(const std::string& dictionary);
 
 // "--dictionary DICT_4X4_50 --ArucoDetection.inverted 1 (20 markers in 3 images), or ...", and what
 // to do with a layout file.

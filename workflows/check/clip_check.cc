@@ -31,7 +31,8 @@ using DetectionsByName = std::map<std::string, const FrameDetections*>;
 constexpr int kNumFramesWithPixels = 10;
 constexpr std::size_t kFewMarkers = 4;
 
-// The layout of the best dictionary; of none where no dictionary finds markers.
+// The layout of the best dictionary; of none where no dictionary finds markers. The pictures that
+// were tried may lack an id, so all of the family are searched for.
 Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
   const std::vector<DictionaryHint> hints = FindDictionaries(clip, *detection);
   if (hints.empty()) return {};
@@ -40,7 +41,10 @@ Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, Clip
     facts->num_markers_of_second = hints[1].num_markers;
     facts->second_dictionary = DictionaryName(hints[1]);
   }
-  return UseDictionary(hints[0], detection);
+  facts->dictionary = hints[0].dictionary;
+  Layout layout = UseDictionary(hints[0], detection);
+  layout.dictionary = LargestOfFamily(layout.dictionary);
+  return layout;
 }
 
 // Frames in order with enough markers, as long as no frame between them has too few.
@@ -125,7 +129,7 @@ class Checker {
     facts.has_camera = options_.camera.has_value();
     ArucoDetectionOptions detection = options_.detection;
     const Layout layout = options_.layout ? *options_.layout : FindLayout(clip, &detection, &facts);
-    facts.dictionary = layout.dictionary;
+    if (options_.layout) facts.dictionary = layout.dictionary;
     facts.is_inverted = detection.inverted;
     MarkFrame(clip.frames[0], {});
     if (layout.dictionary.empty()) return std::move(check_);
@@ -136,7 +140,7 @@ class Checker {
  private:
   bool MeasuresPrecision() const { return options_.layout.has_value(); }
 
-  void Detect(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
+  void Detect(const ClipFrames& clip, const VideoOptions& video, Layout layout,
               const ArucoDetectionOptions& detection) {
     const TemporaryFolder folder;
     MarkerImporterOptions importer;
@@ -158,12 +162,16 @@ class Checker {
       check_.facts.num_frames_damaged = report.num_frames_damaged;
     } catch (const DataError& error) {
       check_.facts.no_markers_because = error.what();
+      layout.dictionary = check_.facts.dictionary;
       CollectIds({}, layout, &check_.facts);
       FindFaults(clip, {}, layout, importer.detection);
       return;
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
+    if (!options_.layout) {
+      check_.facts.dictionary = layout.dictionary = DictionaryOfIds(images, layout.dictionary);
+    }
     DetectionsByName by_name;
     for (const DatabaseImage& image : images) {
       by_name[image.detections.image_name] = &image.detections;

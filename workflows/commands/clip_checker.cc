@@ -135,7 +135,7 @@ void Print(const ClipFacts& facts, std::ostream& out) {
                 " (found by trying: {} detections{})", *facts.num_markers_found,
                 facts.num_markers_of_second
                     ? fmt::format("; {}: {}", facts.second_dictionary, *facts.num_markers_of_second)
-                    : "")
+                    : "; no other finds any, beyond chance")
           : "");
   out << fmt::format("markers_seen: {}\n", facts.num_frames_of_id.size());
   if (!facts.has_layout) {
@@ -172,6 +172,9 @@ void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptio
   std::string comment = std::string(kProposedLayout) + "\n";
   if (!options.check.layout) {
     comment += "marker_length: NOT KNOWN, set to 0.1 m; measure a black square and correct it.\n";
+    comment +=
+        "dictionary: found by trying, the smallest of its family with all ids that the clip shows; "
+        "NOT SURE whether the print has more: then name the dictionary of the print.\n";
   }
   for (const std::string& note : proposal.notes) comment += note + "\n";
   WriteFileAtomically(

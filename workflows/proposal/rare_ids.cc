@@ -22,7 +22,9 @@ std::map<int, int> CountFramesOfIds(const std::vector<DatabaseImage>& images) {
 std::set<int> FindRareIds(const std::map<int, int>& num_frames_of_id) {
   constexpr double kSeldom = 0.2;  // of the median
   std::vector<double> nums;
-  for (const auto& [marker_id, num_frames] : num_frames_of_id) nums.push_back(num_frames);
+  for (const auto& [marker_id, num_frames] : num_frames_of_id) {
+    if (num_frames > 1) nums.push_back(num_frames);
+  }
   if (nums.empty()) return {};
   const double least = kSeldom * Median(std::move(nums));
   std::set<int> rare;

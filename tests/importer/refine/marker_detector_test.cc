@@ -168,6 +168,32 @@ TEST(SuggestDictionaries, AFalseIdDoesNotAskForALargerDictionary) {
   EXPECT_THAT(DescribeHints(hints), testing::HasSubstr("change its key `dictionary`"));
 }
 
+// The first picture convinces, but shows the lower half of the object only.
+TEST(SuggestDictionaries, TheIdsOfAllPicturesTellTheSizeOfTheDictionary) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_1000");
+  std::vector<cv::Mat> images;
+  for (const int first_id : {0, 80}) {
+    std::vector<DrawnMarker> drawn;
+    for (int i = 0; i < 24; ++i) {
+      drawn.push_back({first_id + i, 40 + 120 * (i % 8), 50 + 130 * (i / 8), 60});
+    }
+    images.push_back(Gray(DrawMarkers(dictionary.aruco, {1040, 460}, drawn)));
+  }
+  const std::vector<DictionaryHint> hints = SuggestDictionaries(images, 1, {});
+  ASSERT_EQ(hints.size(), 1u) << DescribeHints(hints);
+  EXPECT_EQ(hints[0].dictionary, "DICT_4X4_250");
+  EXPECT_EQ(hints[0].num_markers, 24);  // as many pictures as were searched for other families
+  EXPECT_EQ(hints[0].num_images, 1);
+}
+
+TEST(DictionaryFamily, BeginsWithTheSameMarkers) {
+  EXPECT_EQ(LargestOfFamily("DICT_5X5_50"), "DICT_5X5_1000");
+  EXPECT_EQ(LargestOfFamily("DICT_APRILTAG_36h11"), "DICT_APRILTAG_36h11");
+  EXPECT_EQ(SmallestOfFamily("DICT_5X5_1000", 49), "DICT_5X5_50");
+  EXPECT_EQ(SmallestOfFamily("DICT_5X5_50", 250), "DICT_5X5_1000");
+  EXPECT_EQ(SmallestOfFamily("DICT_ARUCO_ORIGINAL", 700), "DICT_ARUCO_ORIGINAL");
+}
+
 TEST(SuggestDictionaries, TwoMarkersInTwelvePicturesAreNoEvidence) {
   const Dictionary dictionary = LoadDictionary("DICT_6X6_100");
   const cv::Mat shown =

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "workflows/check/dictionary_search.h"
+
 namespace velamap {
 namespace {
 
@@ -64,6 +66,24 @@ TEST(ClipIds, WithoutALayoutARareIdIsNoMarker) {
   CollectIds(Images(244, 3, false), MakeLayout("DICT_4X4_250", 0.1), &facts);
   EXPECT_THAT(facts.num_frames_of_id, Not(Contains(Key(244))));
   EXPECT_THAT(facts.ids_read_rarely, ElementsAre(244));
+}
+
+// A busy picture holds more false codes than markers, each of them in one frame.
+TEST(ClipIds, ManyFalseIdsDoNotHideThatTheyAreRare) {
+  std::vector<DatabaseImage> images = Images(244, 0, false);
+  for (int i = 0; i < 20; ++i) {
+    images[static_cast<std::size_t>(i)].detections.markers.push_back(Marker(500 + i));
+  }
+  ClipFacts facts;
+  CollectIds(images, MakeLayout("DICT_4X4_1000", 0.1), &facts);
+  EXPECT_THAT(facts.num_frames_of_id, ElementsAre(Pair(1, 20), Pair(2, 20), Pair(3, 20)));
+  EXPECT_EQ(DictionaryOfIds(images, "DICT_4X4_1000"), "DICT_4X4_50");
+}
+
+TEST(ClipIds, TheDictionaryHoldsAllIdsThatAreNotRare) {
+  EXPECT_EQ(DictionaryOfIds(Images(100, 5, false), "DICT_4X4_1000"), "DICT_4X4_250");
+  EXPECT_EQ(DictionaryOfIds(Images(100, 3, false), "DICT_4X4_1000"), "DICT_4X4_50");
+  EXPECT_EQ(DictionaryOfIds({}, "DICT_4X4_1000"), "DICT_4X4_50");
 }
 
 TEST(ClipIds, WithoutPicturesNoMarkerIsSeen) {

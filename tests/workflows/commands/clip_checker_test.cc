@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "importer/layout/layout.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 
@@ -18,6 +19,7 @@ using testing::Not;
 namespace fs = std::filesystem;
 
 const std::string kCube = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/cube/";
+const std::string kSail = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/sail/";
 
 class ClipCheckerTest : public testing::Test {
  protected:
@@ -43,6 +45,21 @@ TEST_F(ClipCheckerTest, FindsTheDictionaryByItself) {
   EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_"), HasSubstr("(found by trying: "),
                              HasSubstr("not_checked: depth, zoom, stabilization\n"),
                              Not(HasSubstr("verdict: good")), Not(HasSubstr("precision: "))));
+}
+
+// No frame of the sail shows all its markers, and two of their ids need the next dictionary.
+TEST_F(ClipCheckerTest, TheDictionaryHasTheIdsOfAllFrames) {
+  const std::string layout = (dir_.path() / "layout.yml").string();
+  const ProgramRun run = RunVelamap(
+      {"clip_checker", "--image_path", kSail + "clip.mp4", "--proposed_layout_path", layout});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_4X4_250 (found by trying: "),
+                             HasSubstr("; no other finds any, beyond chance)"),
+                             HasSubstr("markers_seen: 102\nids: 0-101\n")));
+  const Layout proposed = ReadLayout(layout);
+  EXPECT_EQ(proposed.dictionary, "DICT_4X4_250");
+  EXPECT_EQ(MarkerIds(proposed).size(), 102u);
+  EXPECT_THAT(ReadFileBytes(layout), HasSubstr("# dictionary: found by trying"));
 }
 
 TEST_F(ClipCheckerTest, TheSizesOfTheMarkersReplaceACalibration) {
