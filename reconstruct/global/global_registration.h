@@ -23,7 +23,8 @@
 //    that the layout contradicts (evidence/layout_evidence.h).
 // 6. Doubt. Markers that are posed alone show the noise of the corners without regard to the shape.
 //    If the errors of the map are four times that noise, the result carries a note
-//    (map_verdict.h).
+//    (map_verdict.h). Frames that are sharp and yet do not fit, and those with many outliers, may
+//    be of another camera (CameraDoubt() in registration/registration.h).
 //
 // The order and the ids of the images do not change the result; the random seed only draws the
 // triples.

@@ -36,6 +36,10 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
           static_cast<int>(global.problem.Frame(frame_idx).observation_idxs.size()),
           global.options.min_num_inliers, frame);
     }
+    const auto contradicting = global.num_contradicting_of_frame.find(frame_idx);
+    if (contradicting != global.num_contradicting_of_frame.end()) {
+      frame->num_contradicting = contradicting->second;
+    }
     return;
   }
   frame->cam_from_shape = *pose;
@@ -48,7 +52,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
       const auto dropped = global.dropped_markers.find(observation.marker_idx);
       if (dropped == global.dropped_markers.end()) continue;
       frame->outlier_ids.push_back(marker_id);
-      frame->outlier_reasons.push_back("left out of all images: " + dropped->second.reason);
+      frame->outlier_reasons.push_back(kLeftOutOfAll + dropped->second.reason);
       continue;
     }
     if (!global.solution.IsInlier(idx)) {
@@ -63,6 +67,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
     const double error_px = ReprojectionError(global.problem, global.solution, observation);
     sum += std::pow(error_px * m_per_px, 2);
   }
+  CountContradictions(frame);
   if (!frame->marker_ids.empty()) {
     frame->rms_error_m = std::sqrt(sum / static_cast<double>(frame->marker_ids.size()));
   }

@@ -27,6 +27,8 @@ struct GlobalRegistration {
   std::vector<std::string> reason_of_image;      // why an image is left out, by index in `images`
   std::map<int, DroppedMarker> dropped_markers;  // by marker_idx
   std::vector<std::string> notes;
+  // Markers of the map that a frame shows although it contradicts the map, by frame_idx.
+  std::map<int, int> num_contradicting_of_frame{};
 
   MapGrowthOptions Growth() const {
     return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed),

@@ -18,8 +18,11 @@ namespace {
 constexpr double kMaxSizeRatio = 1.25;
 // An id is in two places when the second has at least this fraction of the support of the first.
 constexpr double kRivalRatio = 0.6;
-// A frame is blurred when its corners scatter this many times as much as all corners.
+// A frame is left out when its corners scatter this many times as much as all corners.
 constexpr double kBlurRatio = 3.0;
+// Its markers, each posed alone, show whether blur is the reason: lens and cloth alone make the
+// errors at most this many times as large as the noise of the corners.
+constexpr double kMaxRatioToOwnNoise = 2.0;
 constexpr int kMinViewsWithoutBlurred = 3;
 
 // Whether the observation would be an inlier of marker `as_marker_idx`, with its corners renumbered
@@ -88,6 +91,24 @@ std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
     }
   }
   return rival_ids;
+}
+
+// Leaves out a frame whose corners scatter `ratio` times as much as those of the other frames.
+void LeaveOutScattered(int frame_idx, double ratio, GlobalRegistration* global) {
+  const auto idx = static_cast<std::size_t>(frame_idx);
+  const MapNoise& noise = global->noise;
+  const bool is_blurred =
+      noise.factor_of_frame[idx] <= kMaxRatioToOwnNoise * noise.single_marker_factor_of_frame[idx];
+  if (!is_blurred) {
+    global->num_contradicting_of_frame[frame_idx] =
+        NumKnown(global->problem, global->solution, frame_idx);
+  }
+  global->LeaveOut(
+      frame_idx,
+      fmt::format("its corners scatter {:.0f} times as much as the other images': {}", ratio,
+                  is_blurred ? "blurred, or the surface moved"
+                             : "sharp, but of another camera, lens mode or zoom, or the surface or "
+                               "the camera moved during the exposure"));
 }
 
 }  // namespace
@@ -170,10 +191,7 @@ void LeaveOutBlurredFrames(GlobalRegistration* global) {
                      kMinViewsWithoutBlurred;
         });
     if (is_needed) continue;
-    global->LeaveOut(static_cast<int>(idx),
-                     fmt::format("its corners scatter {:.0f} times as much as the other images': "
-                                 "blurred, or the surface moved",
-                                 factor / general_factor));
+    LeaveOutScattered(static_cast<int>(idx), factor / general_factor, global);
   }
 }
 
@@ -200,8 +218,7 @@ void LimitFrames(GlobalRegistration* global) {
                                               first_idx, global->options.global.max_num_frames);
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
     if (global->solution.Pose(idx) && !std::binary_search(chosen.begin(), chosen.end(), idx)) {
-      global->LeaveOut(
-          idx, std::string(kNotChosen) + "adds less to the precision than the chosen frames");
+      global->LeaveOut(idx, kAddsLittle);
     }
   }
 }
@@ -224,6 +241,8 @@ void DropUnsupported(GlobalRegistration* global) {
           global->NumInliersInFrame(idx) >= global->options.min_num_inliers) {
         continue;
       }
+      global->num_contradicting_of_frame[idx] =
+          NumKnown(global->problem, global->solution, idx) - global->NumInliersInFrame(idx);
       global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images; {} are "
                                         "needed",
                                         global->NumInliersInFrame(idx),

@@ -108,8 +108,10 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
 MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
   MapNoise noise;
   noise.factor_of_frame.assign(problem.frames.size(), 0.0);
+  noise.single_marker_factor_of_frame = noise.factor_of_frame;
   std::vector<double> relative, errors_px, single_marker_px;
   std::vector<std::vector<double>> relative_of_frame(problem.frames.size());
+  std::vector<std::vector<double>> single_of_frame(problem.frames.size());
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
     if (!solution.is_inlier[idx]) continue;
     const MapObservation& observation = problem.observations[idx];
@@ -117,7 +119,9 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
     relative.push_back(error_px / observation.sigma_px);
     errors_px.push_back(error_px);
     single_marker_px.push_back(observation.single_marker_error_px);
-    relative_of_frame[static_cast<std::size_t>(observation.frame_idx)].push_back(relative.back());
+    const auto frame_idx = static_cast<std::size_t>(observation.frame_idx);
+    relative_of_frame[frame_idx].push_back(relative.back());
+    single_of_frame[frame_idx].push_back(observation.single_marker_error_px / observation.sigma_px);
   }
   if (relative.empty()) return noise;
   // A marker at a known place has 8 degrees of freedom, and 2 after a fit of its pose.
@@ -129,6 +133,8 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
     if (relative_of_frame[idx].empty()) continue;
     noise.factor_of_frame[idx] =
         SigmaFromMedian(Median(std::move(relative_of_frame[idx])), kChiSquaredMedian8);
+    noise.single_marker_factor_of_frame[idx] =
+        SigmaFromMedian(Median(std::move(single_of_frame[idx])), kChiSquaredMedian2);
   }
   return noise;
 }

@@ -7,6 +7,15 @@
 #include "importer/base/error.h"
 
 namespace velamap {
+namespace {
+
+constexpr int kManyMarkers = 8;  // more than chance or false detections spoil
+
+bool StartsWith(const std::string& text, const char* beginning) {
+  return text.rfind(beginning, 0) == 0;
+}
+
+}  // namespace
 
 int Registration::NumRegistered() const {
   return static_cast<int>(std::count_if(frames.begin(), frames.end(), [](const auto& frame) {
@@ -34,16 +43,30 @@ void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, Regist
   frame->num_contradicting = num_shared;
 }
 
+void CountContradictions(RegisteredFrame* frame) {
+  constexpr std::size_t kMinShare_percent = 25;
+  const auto num_left_out =
+      std::count_if(frame->outlier_reasons.begin(), frame->outlier_reasons.end(),
+                    [](const auto& reason) { return StartsWith(reason, kLeftOutOfAll); });
+  const std::size_t num_outliers = frame->outlier_ids.size();
+  const int num_own = static_cast<int>(num_outliers) - static_cast<int>(num_left_out);
+  const bool are_many =
+      num_own >= kManyMarkers &&
+      100 * num_outliers >= kMinShare_percent * (num_outliers + frame->marker_ids.size());
+  frame->num_contradicting = are_many ? num_own : 0;
+}
+
 std::string CameraDoubt(const Registration& registration) {
-  constexpr int kManyMarkers = 8;  // more than chance or false detections spoil
   constexpr int kMinShare_percent = 20;
-  const auto num_contradicting = static_cast<int>(std::count_if(
-      registration.frames.begin(), registration.frames.end(),
-      [](const RegisteredFrame& frame) { return frame.num_contradicting >= kManyMarkers; }));
-  const int num_frames = registration.NumRegistered() + num_contradicting;
+  int num_contradicting = 0, num_frames = 0;
+  for (const RegisteredFrame& frame : registration.frames) {
+    const bool contradicts = frame.num_contradicting >= kManyMarkers;
+    num_contradicting += contradicts;
+    num_frames += contradicts || frame.cam_from_shape || frame.reason == kAddsLittle;
+  }
   if (num_contradicting == 0 || 100 * num_contradicting < kMinShare_percent * num_frames) return "";
   return fmt::format(
-      "{} of {} images show {} or more markers of the shape but fit no position of the camera: "
+      "{} of {} images show {} or more markers of the shape that contradict the other images: "
       "they are of another camera, lens mode or zoom, or the surface moved; give only images of "
       "one camera and one state",
       num_contradicting, num_frames, kManyMarkers);

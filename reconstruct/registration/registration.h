@@ -17,6 +17,12 @@ namespace velamap {
 // The beginning of RegisteredFrame::reason for a frame that would add little to the registered
 // ones.
 inline constexpr char kNotChosen[] = "not chosen: ";
+// The whole reason for one of them that was registered first.
+inline constexpr char kAddsLittle[] =
+    "not chosen: adds less to the precision than the chosen frames";
+
+// The beginning of RegisteredFrame::outlier_reasons for a dropped marker.
+inline constexpr char kLeftOutOfAll[] = "left out of all images: ";
 
 struct RegisteredFrame {
   ImageId image_id = 0;
@@ -29,8 +35,9 @@ struct RegisteredFrame {
   // alignment with the mean shape.
   double rms_error_m = 0.0;
   std::string reason;  // why it is not registered, else empty
-  // The number of the shape's markers that the frame shows, if no pose of the camera fits them;
-  // otherwise 0.
+  // The number of the shape's markers that contradict the other frames: if no pose of the camera
+  // fits the frame, all that it shows; if too many are outliers for chance and false detections,
+  // those; otherwise 0.
   int num_contradicting = 0;
 };
 
@@ -68,8 +75,12 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 // which a frame can be registered.
 void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
 
+// Sets `num_contradicting` of a registered frame: the outliers that are not left out of all frames,
+// if they are at least eight and all outliers are a quarter of the frame's markers.
+void CountContradictions(RegisteredFrame* frame);
+
 // Returns a warning, with the possible causes and a remedy, if at least a fifth of the frames show
-// eight markers of the shape or more and yet no pose of the camera fits them. Empty otherwise.
+// eight markers of the shape or more that contradict the other frames. Empty otherwise.
 std::string CameraDoubt(const Registration& registration);
 
 }  // namespace velamap

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/reconstruct/global/global_registration_fixture.h"
 #include "tests/reconstruct/global/grown_map.h"
 #include "tests/support/test_seed.h"
 
@@ -20,6 +21,48 @@ TEST(LeaveOutBlurredFrames, LeavesOutTheBlurredAlone) {
   LeaveOutBlurredFrames(&grown.global);
   EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 15, 25));
   EXPECT_THAT(grown.global.reason_of_image[15], HasSubstr("blurred"));
+}
+
+// Every `step`-th frame from `first` on is enlarged, as of a second camera.
+void ZoomEvery(std::size_t step, std::size_t first, double zoom, SyntheticScene* scene) {
+  for (std::size_t i = first; i < scene->frames.size(); i += step) {
+    ZoomFrom(i, zoom, scene);
+    ZoomFrom(i + 1, 1 / zoom, scene);
+  }
+}
+
+TEST(LeaveOutBlurredFrames, BlurContradictsNothingAndAnotherCameraDoes) {
+  SyntheticScene blurred = SailWithNoise(26, false, TestSeed());
+  BlurFrames(1.2, TestSeed() + 1, &blurred);
+  GrownMap blurred_map(std::move(blurred));
+  LeaveOutBlurredFrames(&blurred_map.global);
+  EXPECT_THAT(blurred_map.LeftOutFrames(), ElementsAre(5, 15, 25));
+  EXPECT_THAT(blurred_map.global.num_contradicting_of_frame, IsEmpty());
+
+  SyntheticScene zoomed = SailWithNoise(26, false, TestSeed());
+  ZoomEvery(10, 5, 1.003, &zoomed);
+  GrownMap zoomed_map(std::move(zoomed));
+  LeaveOutBlurredFrames(&zoomed_map.global);
+  EXPECT_THAT(zoomed_map.LeftOutFrames(), ElementsAre(5, 15, 25));
+  EXPECT_EQ(zoomed_map.global.num_contradicting_of_frame.size(), 3U);
+  EXPECT_THAT(zoomed_map.global.reason_of_image[15], HasSubstr("sharp, but of another camera"));
+}
+
+// As folders of two telephones that are sorted by time.
+TEST(CameraDoubt, AlternatingCamerasAreSeen) {
+  for (const double zoom : {1.1, 1.2}) {
+    SyntheticScene scene = SailWithNoise(20, false, TestSeed());
+    ZoomEvery(2, 1, zoom, &scene);
+    EXPECT_THAT(CameraDoubt(Register(scene)), HasSubstr("of another camera")) << zoom;
+  }
+}
+
+TEST(CameraDoubt, AThirdOfBlurredFramesIsNoReason) {
+  SyntheticScene scene = SailWithNoise(21, false, TestSeed());
+  SyntheticScene blurred = scene;
+  AddNoise({1.5, 0.0, 0.0, 0, TestSeed() + 1}, &blurred);
+  for (std::size_t i = 1; i < scene.frames.size(); i += 3) scene.frames[i] = blurred.frames[i];
+  EXPECT_THAT(CameraDoubt(Register(scene)), IsEmpty());
 }
 
 TEST(LeaveOutBlurredFrames, FrameThatTheUserNamedStays) {

@@ -1,5 +1,8 @@
 #include "reconstruct/registration/registration.h"
 
+#include <cstddef>
+#include <string>
+
 #include <gmock/gmock.h>
 
 #include "importer/base/error.h"
@@ -44,6 +47,47 @@ TEST(CameraDoubt, FramesThatShareTooFewMarkersContradictNothing) {
   EXPECT_THAT(CameraDoubt(RegistrationOf(50, 3)), IsEmpty());
   EXPECT_THAT(RegistrationOf(1, 3).frames.front().reason,
               HasSubstr("shares 3 of its 12 markers with the registered images; 4 are needed"));
+}
+
+RegisteredFrame FrameWithOutliers(int num_inliers, int num_own, int num_left_out_of_all) {
+  RegisteredFrame frame;
+  frame.cam_from_shape = Rigid3();
+  for (int i = 0; i < num_inliers; ++i) frame.marker_ids.push_back(i);
+  for (int i = 0; i < num_own + num_left_out_of_all; ++i) {
+    frame.outlier_ids.push_back(100 + i);
+    frame.outlier_reasons.push_back(i < num_own ? "3.1 px from its place"
+                                                : kLeftOutOfAll + std::string("a false square"));
+  }
+  CountContradictions(&frame);
+  return frame;
+}
+
+TEST(CountContradictions, ManyOutliersOfAFrameAreContradictions) {
+  EXPECT_EQ(FrameWithOutliers(24, 8, 0).num_contradicting, 8);
+  EXPECT_EQ(FrameWithOutliers(42, 13, 8).num_contradicting, 13);
+}
+
+TEST(CountContradictions, FewOutliersAndThoseOfAllFramesAreNone) {
+  EXPECT_EQ(FrameWithOutliers(10, 7, 0).num_contradicting, 0);
+  EXPECT_EQ(FrameWithOutliers(30, 8, 0).num_contradicting, 0);
+  EXPECT_EQ(FrameWithOutliers(10, 0, 20).num_contradicting, 0);
+}
+
+TEST(CameraDoubt, RegisteredFramesWithManyOutliersCount) {
+  Registration registration = RegistrationOf(0, 12);
+  for (std::size_t i = 0; i < 20; ++i) registration.frames[i] = FrameWithOutliers(20, 10, 0);
+  EXPECT_THAT(CameraDoubt(registration), HasSubstr("20 of 100 images"));
+  registration.frames[0] = FrameWithOutliers(30, 0, 0);
+  EXPECT_THAT(CameraDoubt(registration), IsEmpty());
+}
+
+TEST(CameraDoubt, FramesThatOnlyAddLittleAgree) {
+  Registration registration = RegistrationOf(15, 12);
+  for (std::size_t i = 15; i < 60; ++i) {
+    registration.frames[i] = {};
+    registration.frames[i].reason = kAddsLittle;
+  }
+  EXPECT_THAT(CameraDoubt(registration), IsEmpty());
 }
 
 TEST(CheckEnoughImages, NamesTheNumberThatIsNeeded) {
