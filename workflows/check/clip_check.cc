@@ -1,11 +1,8 @@
 #include "workflows/check/clip_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
-
-#include <opencv2/core.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -14,10 +11,10 @@
 #include "importer/marker_importer.h"
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/clip_ids.h"
+#include "workflows/check/clip_light.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"
 #include "workflows/check/marked_frame.h"
-#include "workflows/check/marker_light.h"
 #include "workflows/proposal/clip_map.h"
 #include "workflows/proposal/layout_correction.h"
 #include "workflows/proposal/print_faults.h"
@@ -25,8 +22,6 @@
 
 namespace velamap {
 namespace {
-
-using DetectionsByName = std::map<std::string, const FrameDetections*>;
 
 constexpr int kNumFramesWithPixels = 10;
 constexpr std::size_t kFewMarkers = 4;
@@ -73,38 +68,6 @@ double SecondsPerFrame(const ClipFrames& clip) {
   const Frame &first = clip.frames.front(), &last = clip.frames.back();
   if (!first.time_s || !last.time_s || first.frame_number == last.frame_number) return 0.0;
   return (*last.time_s - *first.time_s) / (*last.frame_number - *first.frame_number);
-}
-
-// Light and blur of all markers in the frames that were read with their pixels.
-void MeasureLights(const ClipFrames& clip, const DetectionsByName& detections, bool inverted,
-                   ClipFacts* facts) {
-  std::vector<double> blacks, whites, blurs_px, motions_px;
-  for (const Frame& frame : clip.frames) {
-    const auto found = detections.find(frame.image_name);
-    if (found == detections.end()) continue;
-    cv::Mat gray = frame.gray;
-    if (inverted) cv::bitwise_not(frame.gray, gray);
-    for (const MarkerDetection& marker : found->second->markers) {
-      const auto light = MeasureLight(gray, marker.corners_in_image_px);
-      if (!light) continue;
-      blacks.push_back(light->black);
-      whites.push_back(light->white);
-      blurs_px.push_back(light->least_blur_px);
-      // A path of length l during the exposure adds l^2 / 12 to the variance across its edges.
-      motions_px.push_back(
-          std::sqrt(12.0 * (std::pow(light->most_blur_px, 2) - std::pow(light->least_blur_px, 2))));
-    }
-  }
-  if (blacks.empty()) return;
-  facts->black = Median(std::move(blacks));
-  facts->white = Median(std::move(whites));
-  if (inverted) {
-    facts->black = 255 - *facts->black;
-    facts->white = 255 - *facts->white;
-    std::swap(facts->black, facts->white);
-  }
-  facts->blur_px = Median(std::move(blurs_px));
-  facts->motion_px = Median(std::move(motions_px));
 }
 
 class Checker {
@@ -239,7 +202,7 @@ class Checker {
     facts.num_frames_with_few_markers = facts.num_frames_read - num_with_enough;
     facts.side_px = ComputeStatistics(std::move(sides_px));
     facts.good_stretches = FindGoodStretches(images, frame_step * SecondsPerFrame(clip));
-    MeasureLights(clip, by_name, facts.is_inverted, &facts);
+    MeasureLights(clip, by_name, &facts);
     const FrameDetections* best = nullptr;
     const Frame* best_frame = nullptr;
     for (const Frame& frame : clip.frames) {

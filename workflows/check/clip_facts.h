@@ -51,8 +51,10 @@ struct ClipFacts {
   std::string no_markers_because;       // the importer's reason why there are none
   std::map<int, int> num_frames_of_id;  // of markers that the layout names, or of all
   std::vector<int> ids_never_seen;      // of the layout
-  std::vector<int> ids_not_in_layout;   // seen too often to be misread
-  std::vector<int> ids_read_rarely;     // probably misread: not in the layout, or without one any
+  // Those of them that have seen markers on both sides on a line of the layout.
+  std::vector<int> ids_unseen_between_seen;
+  std::vector<int> ids_not_in_layout;  // seen too often to be misread
+  std::vector<int> ids_read_rarely;    // probably misread: not in the layout, or without one any
   // Found only in mirrored frames, if these show more markers than the frames themselves.
   std::vector<int> ids_mirrored;
   bool has_layout = false;
@@ -67,7 +69,11 @@ struct ClipFacts {
   // Medians over the markers; nothing where no side could be measured.
   std::optional<double> black, white;        // grey levels, 0 to 255
   std::optional<double> blur_px, motion_px;  // sigma of the blur; path during the exposure
-  std::vector<ClipStretch> good_stretches;   // videos
+  // The fraction of the measured markers that are overexposed or pale, and the ids for which most
+  // of their pictures are.
+  double poor_light_share = 0.0;
+  std::vector<int> ids_in_poor_light;
+  std::vector<ClipStretch> good_stretches;  // videos
   std::optional<ClipPrecision> precision;
   std::string no_precision_because;
   bool has_camera = false;

@@ -2,11 +2,30 @@
 
 #include <map>
 #include <set>
+#include <vector>
 
 #include "importer/detect/detection.h"
 #include "workflows/proposal/rare_ids.h"
 
 namespace velamap {
+namespace {
+
+void CollectUnseenBetweenSeen(const MarkerLine& line, const std::map<int, int>& num_frames_of_id,
+                              std::set<int>* ids) {
+  std::vector<int> unseen;
+  bool is_behind_seen = false;
+  for (const int marker_id : line.marker_ids) {
+    if (num_frames_of_id.count(marker_id) == 0) {
+      unseen.push_back(marker_id);
+      continue;
+    }
+    if (is_behind_seen) ids->insert(unseen.begin(), unseen.end());
+    unseen.clear();
+    is_behind_seen = true;
+  }
+}
+
+}  // namespace
 
 void CollectIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
   const std::map<int, int> num_frames_of_id = CountFramesOfIds(images);
@@ -30,6 +49,15 @@ void CollectIds(const std::vector<DatabaseImage>& images, const Layout& layout, 
   for (const int marker_id : MarkerIds(layout)) {
     if (facts->num_frames_of_id.count(marker_id) == 0) facts->ids_never_seen.push_back(marker_id);
   }
+  std::set<int> between;
+  for (const LayoutPart& part : layout.parts) {
+    for (const auto* lines : {&part.horizontal, &part.vertical}) {
+      for (const MarkerLine& line : *lines) {
+        CollectUnseenBetweenSeen(line, facts->num_frames_of_id, &between);
+      }
+    }
+  }
+  facts->ids_unseen_between_seen.assign(between.begin(), between.end());
 }
 
 }  // namespace velamap

@@ -12,7 +12,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMaxBlurPx = 1.5, kMaxMotionPx = 4.0;
-constexpr double kMinContrast = 60.0, kMaxWhite = 250.0;
+constexpr double kMaxShareInPoorLight = 0.1;
 constexpr double kMaxShareWithFewMarkers = 0.3;
 constexpr int kRarelySeen = 3;
 
@@ -72,9 +72,8 @@ class Judge {
           "{} of {} markers of the layout are never seen: the layout or the dictionary does not "
           "belong to these pictures: give those of this object, or film all of it",
           num_missing, num_missing + facts_.num_frames_of_id.size()));
-    } else if (num_missing > 0) {
-      reasons_.Check(fmt::format("never seen: {}: film them, or remove them from the layout",
-                                 IdRanges(facts_.ids_never_seen)));
+    } else {
+      JudgeUnseen();
     }
     std::vector<int> rare;
     for (const auto& [marker_id, num_frames] : facts_.num_frames_of_id) {
@@ -88,6 +87,26 @@ class Judge {
       reasons_.Check(fmt::format("not in the layout: {}: add them, or take them off the object",
                                  IdRanges(facts_.ids_not_in_layout)));
     }
+  }
+
+  // Where the camera has seen the markers on both sides, filming longer does not help.
+  void JudgeUnseen() {
+    const std::vector<int>& between = facts_.ids_unseen_between_seen;
+    std::vector<int> others;
+    for (const int marker_id : facts_.ids_never_seen) {
+      if (std::count(between.begin(), between.end(), marker_id) == 0) others.push_back(marker_id);
+    }
+    if (!between.empty()) {
+      reasons_.Check(fmt::format(
+          "{} {} never found: {}: look for glare, shadow or something in front of them; remove "
+          "from the layout what is not there",
+          between.size(),
+          between.size() == 1 ? "marker between seen ones is" : "markers between seen ones are",
+          IdRanges(between)));
+    }
+    if (others.empty()) return;
+    reasons_.Check(
+        fmt::format("never seen: {}: film them, or remove them from the layout", IdRanges(others)));
   }
 
   void JudgeSize() {
@@ -107,6 +126,13 @@ class Judge {
           fmt::format("black and white differ by {:.0f} of 255 grey levels: increase the "
                       "exposure, avoid glare",
                       *facts_.white - *facts_.black));
+    } else if (*facts_.white <= kMaxWhite && facts_.poor_light_share > kMaxShareInPoorLight) {
+      reasons_.Check(fmt::format(
+          "{:.0f} % of the markers are overexposed or pale{}: avoid glare, film from another side "
+          "or without direct sun",
+          100 * facts_.poor_light_share,
+          facts_.ids_in_poor_light.empty() ? ""
+                                           : ", mostly " + IdRanges(facts_.ids_in_poor_light)));
     }
     if (*facts_.motion_px > kMaxMotionPx) {
       reasons_.Check(
@@ -249,8 +275,9 @@ std::string SizeHint(const ClipFacts& facts) {
       facts.precision ? fmt::format("the size is known to {:.2f} % (1 sigma) from these frames",
                                     100 * facts.precision->scale_sigma)
                       : "the size may be known only to a few tenths of a percent";
-  return fmt::format("{}, and below {:.0f} px more and more are lost; {}; for more of both, {}",
-                     SmallMarkersText(facts), kBadSidePx, size, kLargerMarkers);
+  return fmt::format(
+      "{}, and below {:.0f} px more and more are lost; {}; for more markers and a better size, {}",
+      SmallMarkersText(facts), kBadSidePx, size, kLargerMarkers);
 }
 
 }  // namespace velamap

@@ -12,6 +12,7 @@
 #include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
+#include "workflows/check/clip_limits.h"
 #include "workflows/check/clip_verdict.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
@@ -102,8 +103,10 @@ std::string StretchesText(const std::vector<ClipStretch>& stretches) {
 
 void PrintLight(const ClipFacts& facts, std::ostream& out) {
   if (!facts.white) return;
-  out << fmt::format("grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black,
-                     *facts.white);
+  out << fmt::format(
+      "grey_levels: black {:.0f}, white {:.0f} of 255 (good: white at most {:.0f}, black at least "
+      "{:.0f} below it)\n",
+      *facts.black, *facts.white, kMaxWhite, kMinContrast);
   out << fmt::format("blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n",
                      *facts.blur_px, *facts.motion_px);
 }
@@ -147,7 +150,8 @@ void Print(const ClipFacts& facts, std::ostream& out) {
     out << fmt::format("ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
   }
   if (!facts.ids_read_rarely.empty()) {
-    out << fmt::format("ids_read_rarely: {} (probably misread)\n", IdRanges(facts.ids_read_rarely));
+    out << fmt::format("ids_read_rarely: {} (probably misread: nothing to do)\n",
+                       IdRanges(facts.ids_read_rarely));
   }
   if (facts.side_px.count > 0) {
     out << fmt::format("side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,

@@ -86,6 +86,18 @@ TEST(ClipIds, TheDictionaryHoldsAllIdsThatAreNotRare) {
   EXPECT_EQ(DictionaryOfIds({}, "DICT_4X4_1000"), "DICT_4X4_50");
 }
 
+// Filming longer helps at the end of a line, but not between markers that are seen.
+TEST(ClipIds, UnseenMarkersBetweenSeenOnesAreToldFromThoseAtTheEnds) {
+  Layout layout = MakeLayout("DICT_4X4_250", 0.1);
+  layout.parts.emplace_back();
+  layout.parts[0].horizontal = {{"h1", {8, 1, 5, 6, 2, 9}}, {"h2", {3, 7}}};
+  layout.parts[0].vertical = {{"v1", {1, 4, 3}}};
+  ClipFacts facts;
+  CollectIds(Images(244, 0, false), layout, &facts);
+  EXPECT_THAT(facts.ids_never_seen, ElementsAre(4, 5, 6, 7, 8, 9));
+  EXPECT_THAT(facts.ids_unseen_between_seen, ElementsAre(4, 5, 6));
+}
+
 TEST(ClipIds, WithoutPicturesNoMarkerIsSeen) {
   ClipFacts facts;
   CollectIds({}, FourMarkers(), &facts);

@@ -58,6 +58,12 @@ std::vector<Spoilt> SpoiltPictures() {
            [](ClipFacts* facts) {
              facts->ids_never_seen = {21, 22, 23, 25};
            }},
+          {"2 markers between seen ones are never found: 21-22", ReportStatus::kCheck,
+           [](ClipFacts* facts) {
+             facts->ids_never_seen = facts->ids_unseen_between_seen = {21, 22};
+           }},
+          {"12 % of the markers are overexposed", ReportStatus::kCheck,
+           [](ClipFacts* facts) { facts->poor_light_share = 0.12; }},
           {"61 of 81 markers of the layout are never seen: the layout or the dictionary",
            ReportStatus::kBad,
            [](ClipFacts* facts) {
@@ -198,6 +204,16 @@ TEST(ClipVerdict, SmallMarkersThatAreFoundAreAHintOnly) {
   facts.side_px = ComputeStatistics({11.9});
   EXPECT_EQ(SizeHint(facts), "");
   EXPECT_EQ(JudgeClip(facts).level, ReportStatus::kBad);
+}
+
+TEST(ClipVerdict, MarkersAtTheEndOfALineAreToBeFilmed) {
+  ClipFacts facts = GoodClip();
+  facts.ids_never_seen = {21, 22, 23};
+  facts.ids_unseen_between_seen = {22};
+  EXPECT_THAT(
+      JudgeClip(facts).reasons,
+      ElementsAre(Field(&VerdictReason::text, HasSubstr("1 marker between seen ones is never")),
+                  Field(&VerdictReason::text, HasSubstr("never seen: 21 23: film them"))));
 }
 
 TEST(ClipVerdict, WhatIsBadComesFirst) {

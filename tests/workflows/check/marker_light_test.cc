@@ -1,9 +1,13 @@
 #include "workflows/check/marker_light.h"
 
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+
+#include "workflows/check/clip_light.h"
 
 namespace velamap {
 namespace {
@@ -68,6 +72,36 @@ TEST(MarkerLight, IsUnknownAtTheBorderAndWithoutContrast) {
   EXPECT_FALSE(MeasureLight(Picture(corners_px, 120, 124, 0.7, 0), corners_px));
   for (Eigen::Vector2d& x_px : corners_px) x_px.x() -= 40;
   EXPECT_FALSE(MeasureLight(Picture(corners_px, 30, 220, 0.7, 0), corners_px));
+}
+
+// The clip as a whole is well exposed, but one marker glares.
+TEST(MeasureLights, FindsTheMarkersInGlare) {
+  const QuadCorners corners_px = Square(0.1);
+  for (const bool is_inverted : {false, true}) {
+    ClipFrames clip;
+    std::vector<FrameDetections> detections(6);
+    DetectionsByName by_name;
+    for (std::size_t i = 0; i < detections.size(); ++i) {
+      const double black = i % 3 == 0 ? 210 : 30, white = i % 3 == 0 ? 250 : 220;
+      Frame frame;
+      frame.image_name = std::to_string(i);
+      frame.gray = is_inverted ? Picture(corners_px, white, black, 0.8, 0)
+                               : Picture(corners_px, black, white, 0.8, 0);
+      clip.frames.push_back(frame);
+      MarkerDetection marker;
+      marker.marker_id = static_cast<int>(i % 3);
+      marker.corners_in_image_px = corners_px;
+      detections[i].markers = {marker};
+      by_name[frame.image_name] = &detections[i];
+    }
+    ClipFacts facts;
+    facts.is_inverted = is_inverted;
+    MeasureLights(clip, by_name, &facts);
+    EXPECT_NEAR(*facts.black, 30, 2);
+    EXPECT_NEAR(*facts.white, 220, 2);
+    EXPECT_DOUBLE_EQ(facts.poor_light_share, 1.0 / 3);
+    EXPECT_EQ(facts.ids_in_poor_light, std::vector<int>{0});
+  }
 }
 
 }  // namespace
