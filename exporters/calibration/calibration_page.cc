@@ -61,6 +61,7 @@ std::string ParameterTable(const EstimatedCamera& found) {
   const std::vector<std::string> names = ParameterNames(found.camera);
   std::string rows = TableRow({CameraModelName(found.camera.model), "value", "sigma"}, "th");
   for (std::size_t i = 0; i < found.camera.params.size(); ++i) {
+    if (IsHeldAtZero(found, i)) continue;
     const bool is_px = names[i].find("px") != std::string::npos;
     rows += TableRow({names[i], fmt::format("{:.{}f}", found.camera.params[i], is_px ? 2 : 6),
                       fmt::format("{:.{}f}", found.sigmas[i], is_px ? 2 : 6)});

@@ -36,6 +36,10 @@ double FocalSigma_percent(const EstimatedCamera& found) {
   return 100 * found.sigmas.front() / found.camera.params.front();
 }
 
+bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index) {
+  return estimate.camera.params[index] == 0.0 && estimate.sigmas[index] == 0.0;
+}
+
 const char* DistortionName(CameraModel model, std::size_t index) {
   constexpr std::array<const char*, 8> kBrown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
   constexpr std::array<const char*, 4> kFisheye = {"k1", "k2", "k3", "k4"};
@@ -78,9 +82,12 @@ std::string DescribeCamera(const EstimatedCamera& estimate) {
   if (center == 2) text += fmt::format(" and {:.1f} +- {:.1f}", values[1], sigmas[1]);
   text += fmt::format(" px, principal point ({:.1f} +- {:.1f}, {:.1f} +- {:.1f}) px",
                       values[center], sigmas[center], values[center + 1], sigmas[center + 1]);
+  const char* separator = ", distortion";
   for (std::size_t i = center + 2; i < values.size(); ++i) {
-    text += fmt::format("{} {} {:.4f} +- {:.4f}", i == center + 2 ? ", distortion" : ",",
+    if (IsHeldAtZero(estimate, i)) continue;
+    text += fmt::format("{} {} {:.4f} +- {:.4f}", separator,
                         DistortionName(camera.model, i - center - 2), values[i], sigmas[i]);
+    separator = ",";
   }
   return text;
 }

@@ -21,6 +21,9 @@ struct EstimatedCamera {
 double FocalSigma_percent(const EstimatedCamera& found);
 inline constexpr double kGoodFocalSigma_percent = 1.0;
 
+// Whether the parameter was not estimated, as the last ones of a model that did not need them.
+bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index);
+
 // k1, k2, p1, ... of the distortion parameter at `index`.
 const char* DistortionName(CameraModel model, std::size_t index);
 
@@ -36,7 +39,7 @@ void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin
                       const std::string& path);
 
 // `SIMPLE_RADIAL, focal length 901.3 +- 0.4 px, principal point (964.2 +- 0.5, 536.7 +- 0.6) px,
-// distortion k1 -0.2451 +- 0.0012`.
+// distortion k1 -0.2451 +- 0.0012`, without distortion parameters that were held at 0.
 std::string DescribeCamera(const EstimatedCamera& estimate);
 
 }  // namespace velamap

@@ -200,14 +200,16 @@ std::vector<std::string> Instructions(const Placement& placement) {
         "The places need not be exact: the order on the lines is what counts. Arrows point up."};
   }
   return {
-      "Mark where a line meets the luff (from the tack) and the leech (from the clew): next "
-      "page. Stretch a string between the marks.",
-      "Numbers above the squares are ids, those below are distances in m along the string, from "
-      "the luff to the marker's centre.",
-      "The places need not be exact, a few centimetres do no harm: the order on the lines is "
-      "what counts. Arrows point to the head.",
-      "The luff is drawn on the left. On the other side of the sail it is on the right: mirror "
-      "the places, not the markers; lines still begin at the luff."};
+      "Mark where a line meets luff (from the tack) and leech (from the clew): next page. Stretch "
+      "a "
+      "string between the marks.",
+      "Numbers above the squares are ids, those below distances in m along the string, from the "
+      "luff to the marker's centre.",
+      "The places need not be exact to centimetres: the order on the lines is what counts. Arrows "
+      "point to the head.",
+      "The luff is drawn on the left. On the other side of the sail it is on the right: mirror the "
+      "places, not the markers;",
+      "lines still begin at the luff."};
 }
 
 // Writes the ids of a rigid part and where its markers may go.

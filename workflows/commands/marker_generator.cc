@@ -62,7 +62,11 @@ void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& optio
   out << fmt::format("markers: {}\n", report.num_markers);
   out << fmt::format("paper: {}\n", options.print.sheet.paper.name);
   out << fmt::format("sheets: {}\n", report.num_sheets);
-  out << fmt::format("pages_before_sheets: {}\n", report.num_drawings);
+  if (report.num_drawings > 0) {
+    out << fmt::format(
+        "drawing: {} (where the markers go)\n",
+        report.num_drawings == 1 ? "page 1" : fmt::format("pages 1-{}", report.num_drawings));
+  }
   if (report.margin_mm > 0) out << fmt::format("white_margin_mm: {:.4g}\n", report.margin_mm);
   if (report.drawn_length_mm) {
     out << fmt::format(
@@ -76,6 +80,7 @@ void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& optio
     }
   }
   out << "output_path: " << options.paths.output_path << '\n';
+  out << "next: print sheets.pdf at 100 % and measure the scale on the sheets\n";
 }
 
 void Run(const MarkerGeneratorCommandOptions& options) {

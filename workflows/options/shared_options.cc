@@ -1,6 +1,8 @@
 #include "workflows/options/shared_options.h"
 
 #include <filesystem>
+#include <string>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,24 @@
 #include "importer/camera/calibration.h"
 
 namespace velamap {
+namespace {
+
+// Takes "warning", too, which the messages begin with.
+Option LogLevelOption(LogLevel* level) {
+  Option option = ChoiceOption("log_level", level,
+                               {{LogLevel::kError, "error"},
+                                {LogLevel::kWarn, "warn"},
+                                {LogLevel::kInfo, "info"},
+                                {LogLevel::kDebug, "debug"}},
+                               "least severe messages that are shown");
+  auto& parsed = std::get<ParsedValue>(option.target);
+  parsed.set = [set = parsed.set](const std::string& text, const std::string& name) {
+    set(text == "warning" ? "warn" : text, name);
+  };
+  return option;
+}
+
+}  // namespace
 
 Option Required(Option option) {
   option.required = true;
@@ -91,12 +111,7 @@ Option ScaleOption(ScaleMethod* scale_by) {
 OptionGroup DescribeOptions(GeneralOptions* options) {
   return {
       "General",
-      {ChoiceOption("log_level", &options->log_level,
-                    {{LogLevel::kError, "error"},
-                     {LogLevel::kWarn, "warn"},
-                     {LogLevel::kInfo, "info"},
-                     {LogLevel::kDebug, "debug"}},
-                    "least severe messages that are shown"),
+      {LogLevelOption(&options->log_level),
        {"random_seed", &options->random_seed, "seed",
         "seed of the random numbers; the same seed gives the same result", AtLeast(0)},
        {"num_threads", &options->num_threads, "count",

@@ -77,7 +77,9 @@ void PrintShutters(const ShootPlan& plan, std::ostream& out) {
 }
 
 void PrintVariants(const ShootPlan& plan, std::ostream& out) {
-  out << "\nWhat other paths give (1 sigma; shape: after an alignment with scale)\n"
+  out << "\nWhat other paths give (1 sigma; marker_mm contains the size of the print, shape_mm "
+         "does "
+         "not)\n"
          "changed   distance_m  arc_deg  views    markers   marker_mm  shape_mm   scale_%\n";
   for (const PlannedVariant& variant : plan.variants) {
     out << fmt::format("{:<9} {:>10.4g}  {:>7.0f}  {:>5}  {}\n", variant.changed,

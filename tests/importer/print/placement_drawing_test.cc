@@ -89,5 +89,18 @@ INSTANTIATE_TEST_SUITE_P(Sails, PlacementDrawing,
                                          SailSize{3, 3, 3, 50}, SailSize{10, 4, 10, 150},
                                          SailSize{5, 3, 6.5, 60}, SailSize{2.2, 1.9, 2.6, 40}));
 
+// A line that is too long is drawn smaller than its neighbours.
+TEST(PlacementInstructions, LinesOfInstructionsFitOnA4) {
+  constexpr double kLetter = 0.485;  // mean width of the letters of a sentence, of the font size
+  int num_sentences = 0;
+  for (const Text& text : PictureOf(6, 3, 6.2, 100, "A4").texts) {
+    if (text.max_width_mm == kAnyWidth) continue;
+    ++num_sentences;
+    EXPECT_LE(kLetter * text.size_mm * static_cast<double>(text.text.size()), text.max_width_mm)
+        << text.text;
+  }
+  EXPECT_GT(num_sentences, 5);
+}
+
 }  // namespace
 }  // namespace velamap

@@ -167,6 +167,7 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
   EXPECT_THAT(error_of("--ArucoDetection.corner_refinement", "contour"),
               HasSubstr("none, subpix or edge"));
   EXPECT_THAT(error_of("--log_level", "loud"), HasSubstr("error, warn, info or debug"));
+  EXPECT_THAT(error_of("--log_level", "warning"), Not(HasSubstr("--log_level")));
   const ProgramRun backend = RunVelamap(
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "g2o"});
   EXPECT_EQ(backend.exit_code, 2);

@@ -10,6 +10,7 @@ namespace velamap {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 class MarkerGeneratorTest : public ::testing::Test {
@@ -48,8 +49,17 @@ TEST_F(MarkerGeneratorTest, SaysWhatItMade) {
   EXPECT_THAT(run.out, HasSubstr("dictionary: OWN_4X4_3 (3 codes)\ndictionary_distance: "));
   EXPECT_THAT(run.out, HasSubstr("markers: 3\npaper: A4\nsheets: 1\n"));
   EXPECT_THAT(run.out, HasSubstr("white_margin_mm: 12.5\n"));
+  EXPECT_THAT(run.out, EndsWith("next: print sheets.pdf at 100 % and measure the scale on the "
+                                "sheets\n"));
   EXPECT_THAT(ListFolder(Folder()),
               ElementsAre(".velamap", "dictionary.yml", "layout.yml", "sheets.pdf"));
+}
+
+TEST_F(MarkerGeneratorTest, SaysOnWhichPagesTheDrawingIs) {
+  const ProgramRun run = Run({"--arrangement", "sail", "--Sail.luff", "6", "--Sail.foot", "3",
+                              "--Sail.leech", "6.2", "--marker_length", "0.1"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\ndrawing: pages 1-2 (where the markers go)\n"));
 }
 
 // A length that was measured must not be shrunk by the printer a second time.
