@@ -33,6 +33,11 @@ function problemsOf(frame, width) {
     text.selectNodeContents(cell);
     if (cell.textContent.length < 12 && text.getClientRects().length > 2) problems.push(`letters of '${cell.textContent}' stand under each other`);
   }
+  // What a screen scrolls, paper cuts.
+  for (const box of doc.querySelectorAll('.table')) {
+    const isPrinted = frame.contentWindow.getComputedStyle(box).overflowX === 'visible';
+    if (isPrinted && box.scrollWidth > box.clientWidth) problems.push(`${box.id} is ${box.scrollWidth} px wide on ${box.clientWidth} px of paper`);
+  }
   const chart = frame.contentWindow.Chart.getChart('chart_sections');
   const {x, y} = chart.scales;
   const scale = axis => (axis.max - axis.min) / (axis === x ? chart.chartArea.width : chart.chartArea.height);

@@ -59,6 +59,13 @@ class ReportBrowser : public BrowserTest {
     section.name = "line h3";
     section.chord_m = Estimate{2.345, 0.0012};
     section.camber_percent = Estimate{9.25, 0.003};
+    section.draft_percent = Estimate{41.2, 0.12};
+    section.entry_deg = Estimate{20.5, 0.14};
+    section.exit_deg = Estimate{-17.5, 0.14};
+    section.twist_deg = Estimate{10.3, 0.011};
+    section.leech_twist_deg = Estimate{-10.1, 0.12};
+    section.girth_m = Estimate{2.4021, 0.0013};
+    section.note = "3 markers missing at the luff and 2 at the leech";
     section.profile_m = {{0, 0}, {1, 0.2}, {2.345, 0}};
     for (int i = 0; i < 13; ++i) {
       section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
@@ -74,6 +81,9 @@ class ReportBrowser : public BrowserTest {
                   "<!DOCTYPE html><body style=\"margin:0\"><iframe src=\"report.html\" "
                   "width=\"390\" height=\"1500\" style=\"border:0\"></iframe>");
   }
+
+  std::vector<std::string> ProblemsOf(const std::string& page,
+                                      const std::vector<std::string>& widths) const;
 
   static int num_markers_;
 };
@@ -259,13 +269,14 @@ std::string EscapedForAttribute(const std::string& text) {
   return escaped;
 }
 
-// Sizes and places of the elements on a phone and on a large screen.
-TEST_F(ReportBrowser, NothingOverlapsOrIsCut) {
-  const std::string page = EscapedForAttribute(ReadFileBytes(*dir_ / "report.html"));
+// What page_problems.js finds in the page at each of these widths, px.
+std::vector<std::string> ReportBrowser::ProblemsOf(const std::string& page,
+                                                   const std::vector<std::string>& widths) const {
+  const std::string escaped = EscapedForAttribute(page);
   std::string frames;
-  for (const char* width : {"390", "1400"}) {
-    frames += std::string("<iframe width=\"") + width + "\" height=\"3000\" srcdoc=\"" + page +
-              "\"></iframe>";
+  for (const std::string& width : widths) {
+    frames +=
+        "<iframe width=\"" + width + "\" height=\"3000\" srcdoc=\"" + escaped + "\"></iframe>";
   }
   WriteTextFile(*dir_ / "measured.html",
                 "<!DOCTYPE html><body>" + frames + "<script>" +
@@ -279,7 +290,23 @@ TEST_F(ReportBrowser, NothingOverlapsOrIsCut) {
   for (std::sregex_iterator it(dom.begin(), dom.end(), problems), end; it != end; ++it) {
     found.push_back((*it)[1]);
   }
-  EXPECT_THAT(found, ElementsAre("none", "none"));
+  return found;
+}
+
+// Sizes and places of the elements on a phone and on a large screen.
+TEST_F(ReportBrowser, NothingOverlapsOrIsCut) {
+  EXPECT_THAT(ProblemsOf(ReadFileBytes(*dir_ / "report.html"), {"390", "1400"}),
+              ElementsAre("none", "none"));
+}
+
+// The page as it is laid out for a printer, which a browser shows if it takes the rules of print
+// for those of its screen.
+TEST_F(ReportBrowser, NoPrintedTableIsWiderThanThePaper) {
+  constexpr char kA4_px[] = "703";  // 186 mm between the margins
+  std::string page = ReadFileBytes(*dir_ / "report.html");
+  page = std::regex_replace(page, std::regex("@media print"), "@media screen");
+  page = std::regex_replace(page, std::regex("<html"), "<html class=\"printing\"");
+  EXPECT_THAT(ProblemsOf(page, {kA4_px}), ElementsAre("none"));
 }
 
 TEST_F(ReportBrowser, Prints) {
