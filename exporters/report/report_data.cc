@@ -270,6 +270,7 @@ std::string ReportJson(const ReportInput& input) {
   json["picture"] = PictureJson(input, errors);
   AddList("sections", input.sections, &json);
   if (!input.section_notes.empty()) json["section_notes"] = input.section_notes;
+  if (!input.surface_notes.empty()) json["surface_notes"] = input.surface_notes;
   if (input.design) {
     json["design"] = {{"name", input.design->name},
                       {"num_markers", input.design->num_markers},

@@ -24,6 +24,7 @@
 //   rigs                     part, luff_bend_m, luff_sag_m, sheeting_angle_deg with their sigmas
 //   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
 //                            triangles
+//   surface_notes            what there is to say about them, and why a part has none
 
 #pragma once
 
@@ -125,6 +126,7 @@ struct ReportInput {
   std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
   std::vector<std::string> section_notes = {};
+  std::vector<std::string> surface_notes = {};
   std::optional<ReportDesign> design = {};
   std::vector<RigNumbers> rigs = {};
   std::vector<ReportSurface> surfaces = {};

@@ -160,6 +160,8 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.section_notes = shape.sail.sections.notes;
   input.rigs = MakeReportRigs(shape.sail.sections);
   input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
+  input.surface_notes = SurfaceNotes(shape);
+  for (const std::string& note : input.surface_notes) LogInfo("surface of {}", note);
   input.clip = seed.clip;
   input.images_left_out = summary.left_out;
   input.markers_left_out = NamedById(summary.dropped_markers);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <ostream>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
@@ -67,61 +69,91 @@ void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
       shape.metrics.side_error_mm.mean);
 }
 
+std::string RollingShutterText(const AdjustmentResult& adjustment) {
+  if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return "";
+  return fmt::format("; rolling shutter of {:.2f} +- {:.2f} ms corrected",
+                     1e3 * adjustment.uncertainty->rolling_shutter_s,
+                     1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
+}
+
 void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
-  out << fmt::format("images: {} of {} used, {:.2g} px mean reprojection error\n",
+  out << fmt::format("images: {} of {} used, {:.2g} px mean reprojection error{}\n",
                      summary.num_images, summary.num_images_total,
-                     summary.shape.model_metrics.error_px.mean);
+                     summary.shape.model_metrics.error_px.mean,
+                     RollingShutterText(summary.adjustment));
   const std::vector<ReportLeftOut> left_out = NeededImages(summary);
   if (!left_out.empty()) out << fmt::format("images left out: {}\n", LeftOutText(left_out));
 }
 
-void PrintSections(const SectionReport& report, std::ostream& out) {
-  for (const Section& section : report.sections) {
-    out << fmt::format("section {} {} at {:.2f} m: camber {} %", section.part, section.name,
-                       section.height_m, FixedText(100.0 * section.camber.value, 1));
-    if (section.draft_position)
-      out << fmt::format(" at {:.0f} %", 100.0 * section.draft_position->value);
-    if (section.twist_deg) {
-      out << fmt::format(", twist {} deg", FixedText(section.twist_deg->value, 1));
-    }
-    const std::string missing = MissingEndsText(section);
-    if (!missing.empty()) out << fmt::format("; only a part of the chord: {}", missing);
-    out << '\n';
+std::string SectionText(const Section& section) {
+  std::string text = fmt::format("{} at {:.2f} m: camber {} %", section.name, section.height_m,
+                                 FixedText(100.0 * section.camber.value, 1));
+  if (section.draft_position) {
+    text += fmt::format(" with the draft at {:.0f} %", 100.0 * section.draft_position->value);
   }
-  PrintRigs(report.rigs, out);
-  for (const MissingSection& missing : report.missing) {
-    out << fmt::format("section {} {} is missing: {}\n", missing.part, missing.name,
-                       missing.reason);
+  if (section.twist_deg) {
+    text += fmt::format(", twist {} deg", FixedText(section.twist_deg->value, 1));
   }
-  for (const std::string& note : report.notes) out << fmt::format("sections: {}\n", note);
+  const std::string missing = MissingEndsText(section);
+  return missing.empty() ? text : text + ", only a part of the chord: " + missing;
 }
 
+// The lowest, the middle and the highest section of a part with lines, which are listed in turn.
+void PrintSectionsOf(const std::vector<const Section*>& sections, std::ostream& out) {
+  const std::size_t last = sections.size() - 1;
+  const std::set<std::size_t> shown = {0, sections.size() / 2, last};
+  std::vector<std::string> texts;
+  for (const std::size_t i : shown) texts.push_back(SectionText(*sections[i]));
+  out << fmt::format("sections of {}{}: {}\n", sections.front()->part,
+                     shown.size() < sections.size()
+                         ? fmt::format(" ({} of {})", shown.size(), sections.size())
+                         : "",
+                     fmt::join(texts, "; "));
+}
+
+void PrintSections(const SectionReport& report, std::ostream& out) {
+  std::vector<const Section*> of_part;
+  for (const Section& section : report.sections) {
+    if (!of_part.empty() && of_part.back()->part != section.part) {
+      PrintSectionsOf(of_part, out);
+      of_part.clear();
+    }
+    of_part.push_back(&section);
+  }
+  if (!of_part.empty()) PrintSectionsOf(of_part, out);
+  PrintRigs(report.rigs, out);
+  std::vector<ReportLeftOut> missing;
+  for (const MissingSection& one : report.missing) {
+    missing.push_back({one.part + " " + one.name, one.reason});
+  }
+  if (!missing.empty()) out << fmt::format("sections missing: {}\n", LeftOutText(missing));
+  if (!report.notes.empty()) out << fmt::format("sections: {}\n", fmt::join(report.notes, "; "));
+}
+
+// All surfaces in one line. What there is to say about them stands in the report and in the log.
 void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
+  std::vector<std::string> texts;
   for (const SailSurface& surface : shape.sail.surfaces) {
-    out << fmt::format("surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
-                       surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
+    texts.push_back(fmt::format("{} {:.4g} m2, {:.2g} mm RMS from its markers", surface.part,
+                                surface.area_m2, kMmPerM * surface.fit.distance_m.rms));
   }
   for (const PartSurface& part : shape.freeform.surfaces) {
-    out << fmt::format("surface: {}, {}, known to {:.2g} mm (1 sigma)\n", ShownName(part.part),
-                       SizeText(part.surface), kMmPerM * part.surface.rms_sigma_m);
+    texts.push_back(fmt::format("{} {}, known to {:.2g} mm (1 sigma)", ShownName(part.part),
+                                SizeText(part.surface), kMmPerM * part.surface.rms_sigma_m));
   }
-  for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
-    for (const std::string& note : *notes) out << fmt::format("surface: {}\n", note);
+  const std::size_t num_notes = SurfaceNotes(shape).size();
+  if (num_notes > 0) {
+    texts.push_back(fmt::format("{} note{} in the report", num_notes, num_notes == 1 ? "" : "s"));
   }
+  if (!texts.empty()) out << fmt::format("surfaces: {}\n", fmt::join(texts, "; "));
 }
 
 void PrintCamera(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                  std::ostream& out) {
-  const AdjustmentResult& adjustment = summary.adjustment;
-  for (const auto& [camera_id, camera] : adjustment.cameras) {
+  for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     out << fmt::format("camera: found from the images, {}\n",
                        FoundCameraText(camera, summary.verdict, paths.Camera().string()));
   }
-  if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return;
-  out << fmt::format(
-      "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
-      1e3 * adjustment.uncertainty->rolling_shutter_s,
-      1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
 }
 
 // One row for each name, with why it was left out.
@@ -176,8 +208,8 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintSections(summary.shape.sail.sections, out);
   PrintSurfaces(summary.shape, out);
   PrintCamera(summary, paths, out);
-  out << fmt::format("look at: {} (in a browser)\n", paths.Report().string());
-  out << fmt::format("files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
+  out << fmt::format("look at: {} (in a browser); CSV, PLY and CAD files in {}\n",
+                     paths.Report().string(), paths.Shape().string());
   out << fmt::format("in COLMAP: {}\n", ColmapCommand(paths));
 }
 

@@ -34,8 +34,9 @@ struct ReconstructionSummary {
 std::string FoundCameraText(const EstimatedCamera& camera, const Verdict& verdict,
                             const std::string& path);
 
-// The verdict with its reasons, then one line each for the markers, the size, the images, the
-// sections, the surfaces and the camera, and the files to open.
+// About ten lines: the verdict with its reasons, then one line each for the markers, the size, the
+// images, the sections and the rig of each sail, the surfaces and a camera that was found, and the
+// files to open.
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out);
 

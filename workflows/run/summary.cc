@@ -122,8 +122,8 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
                        ShownName(part.part), SizeText(part.surface),
                        1e3 * part.surface.distance_m.rms, 1e3 * part.surface.rms_sigma_m);
   }
-  for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
-    for (const std::string& note : *notes) out << fmt::format("surface_note: {}\n", note);
+  for (const std::string& note : SurfaceNotes(report)) {
+    out << fmt::format("surface_note: {}\n", note);
   }
 }
 
@@ -205,6 +205,12 @@ void WarnOfMissingSections(const SectionReport& sections) {
       "these sections cover only a part of the chord, so their camber and twist are not those of "
       "the whole: {}",
       fmt::join(of_a_part, ", "));
+}
+
+std::vector<std::string> SurfaceNotes(const ShapeExportReport& report) {
+  std::vector<std::string> notes = report.sail.surface_notes;
+  notes.insert(notes.end(), report.freeform.notes.begin(), report.freeform.notes.end());
+  return notes;
 }
 
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {

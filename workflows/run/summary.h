@@ -35,6 +35,9 @@ void WarnOfOtherMarkers(const ShapeMetrics& metrics);
 // Warns of lines and heights that have no section, with the reason.
 void WarnOfMissingSections(const SectionReport& sections);
 
+// What there is to say about the surfaces of the sails, then about the others.
+std::vector<std::string> SurfaceNotes(const ShapeExportReport& report);
+
 // Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 

@@ -46,7 +46,7 @@ function main() {
   fillView(data);
   if (data.sections) fillSections(data);
   fillRigs(data.rigs);
-  fillSurfaces(data.surfaces);
+  fillSurfaces(data);
   drawCharts(data);
   onTheme(() => drawCharts(data));
   fillPicture(data.picture);

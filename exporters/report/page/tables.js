@@ -156,9 +156,15 @@ function fillRigs(rigs) {
   ].filter(column => rigs.some(row => column.value(row) !== undefined)), rigs);
 }
 
-function fillSurfaces(surfaces) {
-  if (!surfaces) return;
+function fillNotes(id, notes) {
+  byId(id).append(...(notes || []).map(textContent => element('p', {textContent})));
+}
+
+function fillSurfaces({surfaces, surface_notes: notes}) {
+  if (!surfaces && !notes) return;
   byId('surfaces').hidden = false;
+  fillNotes('note_surfaces', notes);
+  if (!surfaces) return;
   const isSmall = surfaces.every(row => row.area_m2 < 0.1);
   const [unit, unitPerM] = isSmall ? ['mm', 1000] : ['m', 1];
   fillTable('table_surfaces', [
@@ -191,7 +197,7 @@ function figure(name, start, unit, digits, factor) {
 
 function fillSections({sections, section_notes: notes, design}) {
   byId('sections').hidden = false;
-  byId('note_sections').append(...(notes || []).map(textContent => element('p', {textContent})));
+  fillNotes('note_sections', notes);
   if (design) {
     byId('note_design').hidden = false;
     byId('note_design').textContent = `Dashed: ${design.name}, placed so that the markers fit it best. ${
