@@ -49,6 +49,17 @@ std::optional<double> Sigma(const std::optional<double>& variance_m2,
   return std::sqrt(*variance_m2 + *other_variance_m2);
 }
 
+// The rounding of an alignment or of a fit, far below what anything can measure, is 0.
+double WithoutRounding(double value_m) {
+  constexpr double kRounding_m = 1e-9;
+  return std::abs(value_m) < kRounding_m ? 0.0 : value_m;
+}
+
+Deflection MakeDeflection(const Eigen::Vector3d& vector_m, double distance_m,
+                          const std::optional<double>& sigma_m) {
+  return {vector_m.unaryExpr(&WithoutRounding), WithoutRounding(distance_m), sigma_m};
+}
+
 DeflectionField FieldBetween(const Alignment& alignment, const UncertainSurfaces& shape,
                              const UncertainSurfaces& reference, const LayoutPart& part,
                              const GridOptions& options) {
@@ -68,12 +79,11 @@ DeflectionField FieldBetween(const Alignment& alignment, const UncertainSurfaces
     const double u = field.reference.surface_parameters[i].x(),
                  v = field.reference.surface_parameters[i].y();
     const Eigen::Vector3d& normal = field.reference.normals[i];
-    Deflection deflection;
-    deflection.vector_m = EvaluatePoint(of_shape.surface, u, v) - field.reference.vertices_m[i];
-    deflection.distance_m = deflection.vector_m.dot(normal);
-    deflection.sigma_m =
-        Sigma(noise.VarianceAt(u, v, normal), noise_of_reference.VarianceAt(u, v, normal));
-    field.deflections.push_back(deflection);
+    const Eigen::Vector3d vector_m =
+        EvaluatePoint(of_shape.surface, u, v) - field.reference.vertices_m[i];
+    field.deflections.push_back(MakeDeflection(
+        vector_m, vector_m.dot(normal),
+        Sigma(noise.VarianceAt(u, v, normal), noise_of_reference.VarianceAt(u, v, normal))));
   }
   return field;
 }
@@ -94,8 +104,8 @@ DeflectionField FieldFrom(const MeshDistance& design, const ShapeDeviation& devi
     field.deflections.emplace_back();
     if (foot.IsWithin(reach_m, design.Diagonal_m())) {
       field.deflections.back() =
-          Deflection{foot.distance_m * foot.normal, foot.distance_m,
-                     Sigma(noise.VarianceAt(at.x(), at.y(), foot.normal), design_variance_m2)};
+          MakeDeflection(foot.distance_m * foot.normal, foot.distance_m,
+                         Sigma(noise.VarianceAt(at.x(), at.y(), foot.normal), design_variance_m2));
     }
     field.reference.vertices_m[i] -= foot.distance_m * foot.normal;
     field.reference.normals[i] = foot.normal;

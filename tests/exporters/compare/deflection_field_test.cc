@@ -109,6 +109,26 @@ TEST(Deflections, OfAShapeMovedRigidlyAreZeroAfterTheBestFit) {
   EXPECT_LT(LargestVector(FieldOf(deviation.aligned_shape, boat)), 1e-9);
 }
 
+// A best fit is exact to the rounding of coordinates of metres, which is not to be seen in a table.
+TEST(Deflections, RoundingIsZero) {
+  const MarkerShape boat = BoatShape(0.001);
+  AlignmentOptions best_fit;
+  best_fit.method = AlignmentMethod::kBestFit;
+  const ShapeDeviation deviation =
+      CompareWithShape({Moved(FarPose(), boat), {}}, {boat, {}}, BoatLayout(), best_fit);
+  double rounding_m = 0.0;
+  for (std::size_t i = 0; i < boat.markers.size(); ++i) {
+    rounding_m +=
+        (*deviation.aligned_shape.markers[i].x_in_shape_m[0] - *boat.markers[i].x_in_shape_m[0])
+            .norm();
+  }
+  ASSERT_GT(rounding_m, 0.0) << "the example is exact";
+  EXPECT_EQ(LargestVector(FieldOf(deviation.aligned_shape, boat)), 0.0);
+  // What can be measured stays.
+  const Eigen::Vector3d shift_m(0, 1e-6, 0);
+  EXPECT_GT(LargestVector(FieldOf(Shifted(IdsOf("sail"), shift_m, boat), boat)), 0.9e-6);
+}
+
 TEST(Deflections, FollowTheMotionOfTheCloth) {
   const Eigen::Vector3d motion(0.02, 0.03, -0.01);
   const MarkerShape boat = BoatShape(0.001);
