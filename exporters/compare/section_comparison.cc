@@ -124,6 +124,9 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   SectionComparison comparison;
   comparison.frame_name = frame.name;
   comparison.frame_from_reference = frame.frame_from_shape;
+  if (frame.up_in_frame) {
+    comparison.up_in_reference = frame.frame_from_shape.rotation.conjugate() * *frame.up_in_frame;
+  }
   const std::set<int> beyond = MarkersBeyondCommonEnds(shape.shape, reference.shape, layout);
   comparison.of_reference =
       CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout, wanted_part);

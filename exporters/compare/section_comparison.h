@@ -33,6 +33,8 @@ struct SectionDifference {
 struct SectionComparison {
   std::string frame_name;  // of the sections: the reference's, by ChooseFrame()
   Rigid3 frame_from_reference;
+  // Up of that frame (ShapeFrame::up_in_frame), in the frame of the reference.
+  std::optional<Eigen::Vector3d> up_in_reference;
   SectionReport of_shape, of_reference;  // in that frame
   std::vector<SectionDifference> differences;
   // Sections that one of the shapes lacks, with the reason; sections with too few common markers,

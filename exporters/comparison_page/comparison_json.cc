@@ -8,7 +8,6 @@
 #include "exporters/comparison_page/comparison_sections_json.h"
 #include "exporters/comparison_page/comparison_words.h"
 #include "exporters/report/html_page.h"
-#include "exporters/shape/sail_lines.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -25,11 +24,9 @@ bool IsDesign(const ComparisonPageInput& input) { return input.reference == null
 // Up and the view from the side to which the normals point, in the frame of the reference.
 Json FrameJson(const ComparisonPageInput& input, const Eigen::Vector3d& normal) {
   const Comparison& first = input.series.front();
-  const MarkerShape& shape = IsDesign(input) ? first.deviation.aligned_shape : *input.reference;
   const SectionComparison& sections = first.sections;
-  Eigen::Vector3d up =
-      sections.frame_from_reference.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  if (const auto sail_up = SailUp(shape, input.layout)) up = *sail_up;
+  // As in the report: the sail's own direction up is only that of a frame that has none.
+  const Eigen::Vector3d up = sections.up_in_reference.value_or(Eigen::Vector3d::UnitZ());
   Eigen::Vector3d forward = -(normal - normal.dot(up) * up);
   constexpr double kMinHorizontal = 0.1;
   if (forward.norm() < kMinHorizontal) forward = up.unitOrthogonal();

@@ -48,6 +48,18 @@ TEST(ComparisonPage, AShapeAgainstItselfIsTheSame) {
   }
 }
 
+// The luff of the sail leans aft on an upright hull, which the report of the sail shows upright.
+TEST(ComparisonPage, UpIsThatOfTheFrameOfTheReference) {
+  PageExample example;
+  example.reference = Moved(FarPose(), BoatShape(0.001));
+  example.Add("trim2", BoatShape(0.001));
+  const Json up = example.Data()["frame"]["up"];
+  const Eigen::Vector3d up_in_reference(up[0].get<double>(), up[1].get<double>(),
+                                        up[2].get<double>());
+  const Eigen::Vector3d expected = FarPose().rotation * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((up_in_reference - expected).norm(), 1e-4);
+}
+
 TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
   PageExample example;
   example.Add("trim2", Fuller());
