@@ -7,13 +7,14 @@
 //   key_numbers              name, value, meaning, status
 //   markers                  id, part, corners, num_images, num_observations, error_px, centre,
 //                            length_mm, side_deviation_percent, area_deviation_percent, sigma_mm,
-//                            ellipsoid, scale_deviation_percent
+//                            ellipsoid (without errors that markers share),
+//                            scale_deviation_percent
 //   images                   name, central, centre, frustum, num_markers, marker_ratio,
 //                            num_corners, error_mean_px, error_rms_px, error_max_px
 //   histograms               first_border, bin_width, counts, num_below, num_above
 //   scale                    m_per_unit, spread_percent, sigma_percent, num_markers; scale_audit
 //   known_points             rows of the table known_points of metrics.json
-//   images_left_out, markers_left_out    name, reason
+//   images_left_out, images_not_needed, markers_left_out    name, reason
 //   picture                  name, width_px, height_px, jpeg or problem, points, rejected,
 //                            not_detected
 //   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,

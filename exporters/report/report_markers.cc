@@ -27,36 +27,43 @@ std::map<int, ErrorSum> ErrorsByMarker(const std::vector<ObservationError>& erro
   return errors_of;
 }
 
-// Columns are the half axes of the 1 sigma ellipsoid of the centre, m, longest last. Without a
-// joint covariance they are along x, y and z.
-std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
-                                               const ShapeMarker& marker) {
-  std::optional<Eigen::Matrix3d> covariance;
-  const PointCovariance* points =
-      input.uncertainty != nullptr ? &input.uncertainty->points : nullptr;
+// Covariance of the centre, m^2. Without a joint covariance it is that of the sigmas of its
+// coordinates.
+std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance* points,
+                                                const ShapeMarker& marker) {
   if (PointSigma(points, marker.marker_id, 0)) {
-    covariance = JointCovarianceOfPoints(points, {{marker.marker_id, 0}});
+    return JointCovarianceOfPoints(points, {{marker.marker_id, 0}});
   }
-  if (!covariance && marker.sigma_m[0]) {
-    covariance = marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();
-  }
-  if (!covariance) return std::nullopt;
-  const SymmetricEigen eigen = DecomposeSymmetric(*covariance);
+  if (!marker.sigma_m[0]) return std::nullopt;
+  return marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();
+}
+
+// Columns are the half axes of the 1 sigma ellipsoid, m, longest last.
+Eigen::Matrix3d EllipsoidOf(const Eigen::Matrix3d& covariance) {
+  const SymmetricEigen eigen = DecomposeSymmetric(covariance);
   const Eigen::Vector3d sigmas = eigen.values.cwiseMax(0).cwiseSqrt();
   return eigen.vectors * sigmas.asDiagonal();
 }
 
-void AddWholeMarker(const ReportInput& input, const ShapeMarker& marker, ReportJsonValue* json) {
+// `own` is the covariance without the errors that all markers share. Far from the origin of the
+// frame these are much larger, and would draw all ellipsoids as needles that point there.
+void AddWholeMarker(const ReportInput& input, const PointCovariance* own, const ShapeMarker& marker,
+                    ReportJsonValue* json) {
   const double length_m = MarkerLength(input.layout, marker.marker_id);
   const double mean_side_m = MeanSide(MarkerSides(marker));
   (*json)["centre"] = VectorJson(*marker.x_in_shape_m[0]);
   (*json)["length_mm"] = kMmPerM * length_m;
   (*json)["side_deviation_percent"] = 100 * (mean_side_m / length_m - 1);
   (*json)["area_deviation_percent"] = AreaDeviationPercent(marker, input.layout);
-  if (const auto ellipsoid = CenterEllipsoid(input, marker)) {
-    (*json)["sigma_mm"] = kMmPerM * ellipsoid->norm();
-    (*json)["ellipsoid"] = {VectorJson(ellipsoid->col(0)), VectorJson(ellipsoid->col(1)),
-                            VectorJson(ellipsoid->col(2))};
+  const PointCovariance* points =
+      input.uncertainty != nullptr ? &input.uncertainty->points : nullptr;
+  if (const auto covariance = CenterCovariance(points, marker)) {
+    (*json)["sigma_mm"] = kMmPerM * std::sqrt(covariance->trace());
+  }
+  if (const auto covariance = CenterCovariance(own, marker)) {
+    const Eigen::Matrix3d axes = EllipsoidOf(*covariance);
+    (*json)["ellipsoid"] = {VectorJson(axes.col(0)), VectorJson(axes.col(1)),
+                            VectorJson(axes.col(2))};
   }
 }
 
@@ -73,6 +80,8 @@ double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout) {
 
 ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ObservationError>& errors) {
   const std::map<int, ErrorSum> errors_of = ErrorsByMarker(errors);
+  const std::optional<PointCovariance> own =
+      WithoutSharedErrors(input.uncertainty != nullptr ? &input.uncertainty->points : nullptr);
   ReportJsonValue markers = ReportJsonValue::array();
   for (const ShapeMarker& marker : input.shape.markers) {
     ReportJsonValue json = {{"id", marker.marker_id}, {"part", marker.part}};
@@ -85,7 +94,7 @@ ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<Observat
     }
     json["corners"] = corners;
     json["num_images"] = num_frames;
-    if (marker.IsWhole()) AddWholeMarker(input, marker, &json);
+    if (marker.IsWhole()) AddWholeMarker(input, own ? &*own : nullptr, marker, &json);
     if (const auto found = errors_of.find(marker.marker_id); found != errors_of.end()) {
       json["num_observations"] = found->second.count;
       json["error_px"] = found->second.sum_px / found->second.count;

@@ -21,6 +21,7 @@ function connectLayers(view) {
   for (const layer of view.layers) {
     const label = checkBox(layer.name, layer.isOn, isOn => {
       layer.isOn = isOn;
+      view.showLegend();
       view.render();
     });
     layer.box = label.firstChild;
@@ -54,9 +55,6 @@ function connectView(view) {
   });
   window.addEventListener('beforeprint', () => {
     byId('view_print').src = view.picture().toDataURL('image/png');
-    const isFactor = view.layers.some(({key, isOn}) => key === 'ellipsoids' && isOn);
-    byId('view_print_note').textContent = isFactor
-        ? `Ellipsoids: 1 sigma, drawn ${byId('factor_value').textContent} times as large.` : '';
   });
   window.addEventListener('hashchange', () => followAddress(view));
   followAddress(view);

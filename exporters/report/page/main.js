@@ -2,18 +2,28 @@
 
 // Reads the data, fills the page, and connects the controls of the 3D view.
 
-// The first factor makes a typical ellipsoid as wide as its marker.
+// The first factor makes a typical ellipsoid as wide as its marker in its longest direction, and
+// not less than a thirtieth of the view, so that it can be seen beside a marker that is small there.
+function firstFactor(view) {
+  const lengthOf = axis => Math.hypot(...axis);
+  const known = view.markers.filter(({ellipsoid}) => ellipsoid && lengthOf(ellipsoid[2]) > 0);
+  if (known.length === 0) return 0;
+  const least = sizeOf(view.main) / 60;
+  const ratios = known.map(({ellipsoid, length_mm: length}) =>
+      Math.max(length / 2000, least) / lengthOf(ellipsoid[2]));
+  const wanted = quantile(ratios, 0.5);
+  return Math.max(0, FACTORS.filter(factor => factor <= wanted).length - 1);
+}
+
 function connectFactor(view) {
   const layer = view.layers.find(({key}) => key === 'ellipsoids');
   if (!layer) return;
-  const ratios = view.markers.filter(marker => marker.sigma_mm > 0)
-      .map(marker => 0.5 * marker.length_mm / marker.sigma_mm);
-  const first = FACTORS.filter(factor => ratios.length && factor <= quantile(ratios, 0.5)).length - 1;
   const input = byId('factor');
-  Object.assign(input, {min: 0, max: FACTORS.length - 1, value: Math.max(0, first)});
+  Object.assign(input, {min: 0, max: FACTORS.length - 1, value: firstFactor(view)});
   const change = () => {
     byId('factor_value').textContent = FACTORS[input.value];
     layer.object.setFactor(FACTORS[input.value]);
+    view.showLegend();
     view.render();
   };
   input.addEventListener('input', change);

@@ -68,21 +68,27 @@ function cameraLines(images, depth) {
   return group;
 }
 
-// 1 sigma ellipsoids of the centres; `group.setFactor` enlarges them.
+const ELLIPSOID_COLOUR = '#c2185b';
+
+// 1 sigma ellipsoids of the centres; `group.setFactor` enlarges them, and `group.legend` says by
+// how much.
 function ellipsoids(markers) {
   const group = new THREE.Group();
   const sphere = new THREE.SphereBufferGeometry(1, 16, 10);
-  const material = new THREE.MeshLambertMaterial({color: '#c2185b'});
+  const material = new THREE.MeshLambertMaterial({color: ELLIPSOID_COLOUR});
   const known = markers.filter(marker => marker.ellipsoid);
   for (const marker of known) {
     const mesh = new THREE.Mesh(sphere, material);
     mesh.matrixAutoUpdate = false;
     group.add(mesh);
   }
-  group.setFactor = factor => known.forEach(({centre, ellipsoid}, i) => {
-    const axes = ellipsoid.map(axis => new THREE.Vector3(...axis).multiplyScalar(factor));
-    group.children[i].matrix.makeBasis(...axes).setPosition(...centre);
-  });
+  group.setFactor = factor => {
+    group.legend = `1 sigma × ${factor}, without the errors that markers share`;
+    known.forEach(({centre, ellipsoid}, i) => {
+      const axes = ellipsoid.map(axis => new THREE.Vector3(...axis).multiplyScalar(factor));
+      group.children[i].matrix.makeBasis(...axes).setPosition(...centre);
+    });
+  };
   return group;
 }
 

@@ -230,10 +230,25 @@ class View3D {
   }
 
   colourBy(colouring) {
+    this.colouring = colouring;
     colourMarkers(this.mesh, this.markers, colouring);
-    byId('legend').replaceChildren(...colouring.legend(), ...(this.outside.length === 0 ? [] : [element(
-        'span', {className: 'quiet'}, `not in the first view: ${this.outside.join(', ')} ("All cameras" shows all)`)]));
+    this.showLegend();
     this.render();
+  }
+
+  // The colours of the markers, the ellipsoids, and what the first view leaves out.
+  showLegend() {
+    const items = this.colouring.legend();
+    const ellipsoids = this.layers.find(({key}) => key === 'ellipsoids');
+    if (ellipsoids && ellipsoids.isOn && ellipsoids.object.legend) {
+      items.push(element('span', {}, element('span', {className: 'swatch', style: `background:${ELLIPSOID_COLOUR}`}),
+                         ellipsoids.object.legend));
+    }
+    if (this.outside.length > 0) {
+      items.push(element('span', {className: 'quiet'},
+                         `not in the first view: ${this.outside.join(', ')} ("All cameras" shows all)`));
+    }
+    byId('legend').replaceChildren(...items);
   }
 
   // Shows the ids of the markers that face the viewer.

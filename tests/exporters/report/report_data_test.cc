@@ -98,14 +98,16 @@ TEST_F(ReportData, HistogramsCountAllMarkersAndCorners) {
   EXPECT_EQ(total("error_px"), example_.model_metrics.error_px.count);
 }
 
-TEST_F(ReportData, EllipsoidsHaveTheCovarianceOfTheCentre) {
+TEST_F(ReportData, EllipsoidsHaveTheMarkersOwnErrorAndSigmasAllOfIt) {
   ReportExample example = example_;
   const int marker_id = example.shape.markers.front().marker_id;
-  // All corners have the same error, so that the centre has their covariance.
+  // All corners have the same error, so that the centre has their covariance, and another one that
+  // other markers share.
   AdjustmentUncertainty uncertainty;
   Eigen::Matrix3d factor;
   factor << 3e-3, 0, 0, 1e-3, 2e-3, 0, 0.5e-3, 0, 1e-3;
-  uncertainty.points.blocks = {Eigen::MatrixXd::Zero(12, 12)};
+  const Eigen::Matrix3d own = Eigen::Vector3d(4e-6, 1e-6, 9e-6).asDiagonal();
+  uncertainty.points.blocks = {own.replicate<4, 4>()};
   uncertainty.points.factor.resize(12, 3);
   uncertainty.points.signs = Eigen::VectorXd::Ones(3);
   for (int corner = 1; corner <= kNumCorners; ++corner) {
@@ -118,8 +120,9 @@ TEST_F(ReportData, EllipsoidsHaveTheCovarianceOfTheCentre) {
   Eigen::Matrix3d axes;
   for (int i = 0; i < 3; ++i) axes.col(i) = VectorOf(markers.at(0).at("ellipsoid").at(i));
   const Eigen::Matrix3d covariance = factor * factor.transpose();
-  EXPECT_LT((axes * axes.transpose() - covariance).norm(), 1e-12);
-  EXPECT_NEAR(Number(markers.at(0).at("sigma_mm")), 1e3 * std::sqrt(covariance.trace()), 1e-9);
+  EXPECT_LT((axes * axes.transpose() - own).norm(), 1e-12);
+  EXPECT_NEAR(Number(markers.at(0).at("sigma_mm")), 1e3 * std::sqrt((covariance + own).trace()),
+              1e-9);
   EXPECT_FALSE(markers.at(1).contains("ellipsoid"));
 }
 
