@@ -134,6 +134,14 @@ struct ReportInput {
   std::optional<ReportClip> clip = {};  // of a video
 };
 
+// Images without a place in the model: those whose reason the user should know, and those that the
+// registration did not choose because they add little, whose reason then lacks kNotChosen.
+struct LeftOutImages {
+  std::vector<ReportLeftOut> left_out, not_needed;
+};
+
+LeftOutImages SplitLeftOut(const std::vector<ReportLeftOut>& images);
+
 // All markers that are left out, for the report and for what the program prints: those for which
 // the caller knows a reason, then other missing markers of the layout.
 std::vector<ReportLeftOut> AllMarkersLeftOut(std::vector<ReportLeftOut> known,

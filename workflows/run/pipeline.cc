@@ -74,7 +74,9 @@ void LogSeed(const SeedResult& seed) {
   for (const std::string& note : registration.notes) LogInfo(note);
   LogInfo("{} of {} images registered, {} markers", seed.model.images.size(),
           seed.image_names.size(), registration.shape.size());
-  if (!seed.left_out.empty()) LogInfo("images left out: {}", LeftOutText(seed.left_out));
+  const LeftOutImages images = SplitLeftOut(seed.left_out);
+  if (!images.left_out.empty()) LogInfo("images left out: {}", LeftOutText(images.left_out));
+  if (!images.not_needed.empty()) LogInfo("images not needed: {}", LeftOutText(images.not_needed));
   if (const std::string doubt = CameraDoubt(registration); !doubt.empty()) LogWarning(doubt);
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (marker.is_false) {

@@ -1,6 +1,5 @@
 #include "workflows/run/run_summary.h"
 
-#include <algorithm>
 #include <map>
 #include <ostream>
 #include <set>
@@ -19,17 +18,6 @@
 
 namespace velamap {
 namespace {
-
-// Images that were left out for a reason that the user should know.
-std::vector<ReportLeftOut> NeededImages(const ReconstructionSummary& summary) {
-  std::vector<ReportLeftOut> images = summary.left_out;
-  images.erase(std::remove_if(images.begin(), images.end(),
-                              [](const ReportLeftOut& image) {
-                                return image.reason.rfind(kNotChosen, 0) == 0;
-                              }),
-               images.end());
-  return images;
-}
 
 std::string ColmapCommand(const WorkspacePaths& paths) {
   return fmt::format("colmap gui --database_path {} --image_path {} --import_path {}",
@@ -81,7 +69,7 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
                      summary.num_images, summary.num_images_total,
                      summary.shape.model_metrics.error_px.mean,
                      RollingShutterText(summary.adjustment));
-  const std::vector<ReportLeftOut> left_out = NeededImages(summary);
+  const std::vector<ReportLeftOut> left_out = SplitLeftOut(summary.left_out).left_out;
   if (!left_out.empty()) out << fmt::format("images left out: {}\n", LeftOutText(left_out));
 }
 

@@ -134,10 +134,9 @@ std::string LeftOutText(const std::vector<ReportLeftOut>& left_out, const std::s
   if (groups.empty()) return "none";
   std::string text = groups.size() > 1 ? std::to_string(left_out.size()) : "";
   for (const ReasonGroup& group : groups) {
-    const bool is_not_chosen = group.reason.rfind(kNotChosen, 0) == 0;
     const std::string of_kind = kind.empty() ? "" : kind + (group.names.size() > 1 ? "s " : " ");
-    text += fmt::format("{}{}{} {} ({}{})", text.empty() ? "" : "; ", group.names.size(),
-                        is_not_chosen ? "" : ":", group.reason, of_kind, FirstNames(group.names));
+    text += fmt::format("{}{}: {} ({}{})", text.empty() ? "" : "; ", group.names.size(),
+                        group.reason, of_kind, FirstNames(group.names));
   }
   return text;
 }

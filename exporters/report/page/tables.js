@@ -78,19 +78,24 @@ function fillKeyNumbers(numbers) {
   }));
 }
 
-function fillLeftOut(data) {
-  const lists = [['images_left_out', 'Images'], ['markers_left_out', 'Markers']];
-  for (const [key, name] of lists) {
-    if (data[key].length === 0) {
-      byId('left_out').append(element('p', {textContent: `${name}: none.`}));
-      continue;
-    }
-    const id = `table_${key}`;
-    byId('left_out').append(element('details', {open: data[key].length <= 8},
-        element('summary', {textContent: `${name}: ${data[key].length}`}),
-        element('div', {id, className: 'table'})));
-    fillTable(id, [text(name.slice(0, -1), 'name'), text('Reason', 'reason')], data[key]);
+function fillReasons(place, key, name, rows) {
+  if (rows.length === 0) {
+    byId(place).append(element('p', {textContent: `${name}: none.`}));
+    return;
   }
+  const id = `table_${key}`;
+  byId(place).append(element('details', {open: rows.length <= 8},
+      element('summary', {textContent: `${name}: ${rows.length}`}), element('div', {id, className: 'table'})));
+  fillTable(id, [text(name.slice(0, -1), 'name'), text('Reason', 'reason')], rows);
+}
+
+function fillLeftOut(data) {
+  for (const [key, name] of [['images_left_out', 'Images'], ['markers_left_out', 'Markers']]) {
+    fillReasons('left_out', key, name, data[key]);
+  }
+  if (data.images_not_needed.length === 0) return;
+  byId('not_needed').hidden = false;
+  fillReasons('not_needed', 'images_not_needed', 'Images', data.images_not_needed);
 }
 
 function fillTables(data) {

@@ -144,6 +144,17 @@ TEST_F(ReportData, MissingMarkersHaveReasons) {
   EXPECT_EQ(left_out.at(0).at("reason"), "seen in one image");
 }
 
+TEST_F(ReportData, ImagesThatAreNotNeededAreNotLeftOut) {
+  ReportInput input = example_.Input();
+  input.images_left_out = {{"a.jpg", "not chosen: others are sharper"},
+                           {"b.jpg", "no marker found"}};
+  const json data = json::parse(ReportJson(input));
+  EXPECT_EQ(data.at("images_left_out"),
+            json::parse(R"([{"name": "b.jpg", "reason": "no marker found"}])"));
+  EXPECT_EQ(data.at("images_not_needed"),
+            json::parse(R"([{"name": "a.jpg", "reason": "others are sharper"}])"));
+}
+
 // The program prints the same markers, so it asks for them too.
 TEST_F(ReportData, MarkersLeftOutAreTheDroppedAndTheMissing) {
   const auto left_out =

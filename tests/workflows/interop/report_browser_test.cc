@@ -54,7 +54,8 @@ class ReportBrowser : public BrowserTest {
     DrawCentralImage(example.model, dir_->path());
     ReportInput input = example.Input();
     input.image_path = dir_->path().string();
-    input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"}};
+    input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"},
+                             {"frame_000201.jpg", "not chosen: frames next to it are sharper"}};
     ReportSection section;
     section.name = "line h3";
     section.chord_m = Estimate{2.345, 0.0012};
@@ -95,8 +96,10 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   dom.resize(dom.find("<script"));  // what is seen, not what it is made from
   ASSERT_EQ(num_markers_, 130);
   EXPECT_THAT(dom, HasSubstr("130 of 131"));
-  EXPECT_THAT(dom, HasSubstr("100 of 101"));
+  EXPECT_THAT(dom, HasSubstr("100 of 102"));
   EXPECT_THAT(dom, HasSubstr("too blurred for two markers"));
+  EXPECT_GT(dom.find("frames next to it are sharper"), dom.find(">Not needed<"));
+  EXPECT_THAT(dom, HasSubstr("</span>1 sigma × "));
   EXPECT_THAT(dom, HasSubstr("line h3"));
   EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
   EXPECT_THAT(dom, HasSubstr("9.250 ± 0.003"));

@@ -32,9 +32,14 @@ TEST(LeftOutTextTest, ShowsTheFirstNamesOnly) {
 TEST(LeftOutTextTest, SaysTheNumberOnceForOneReason) {
   EXPECT_EQ(LeftOutText({{"17", "its side is 2.00 times as long"}}, "marker"),
             "1: its side is 2.00 times as long (marker 17)");
-  EXPECT_EQ(
-      LeftOutText({{"a", std::string(kNotChosen) + "r"}, {"b", std::string(kNotChosen) + "r"}}),
-      "2 not chosen: r (a, b)");
+}
+
+TEST(LeftOutTextTest, ImagesThatAreNotNeededStandByThemselves) {
+  const std::string not_chosen = kNotChosen;
+  const LeftOutImages images =
+      SplitLeftOut({{"a", not_chosen + "r"}, {"b", "no marker found"}, {"c", not_chosen + "r"}});
+  EXPECT_EQ(LeftOutText(images.left_out), "1: no marker found (b)");
+  EXPECT_EQ(LeftOutText(images.not_needed), "2: r (a, c)");
 }
 
 TEST(FoundCameraTextTest, OnlyAGoodCameraServesTheNextClip) {
