@@ -102,7 +102,9 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
   WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
   WriteFreeformFiles(report.freeform, report.frame, options.files.unit, format, folder);
   // The last one, because it lists the others.
-  const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit);
+  std::map<std::string, std::string> part_of_stem;
+  for (const PartSurface& part : report.freeform.surfaces) part_of_stem[part.file_stem] = part.part;
+  const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit, part_of_stem);
   WriteFile(folder / "shape.json", [&](std::ostream& out) {
     WriteShapeJson(report.frame, report.metric_model, report.metrics.num_markers, options.origin,
                    verdict, described, out);

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <map>
 #include <ostream>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <nlohmann/json.hpp>
@@ -91,14 +92,17 @@ Json CamerasOf(const Model& model, const std::optional<bool>& is_found) {
 
 }  // namespace
 
-DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit) {
+DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit,
+                                  const std::map<std::string, std::string>& part_of_stem) {
   DescribedFiles files;
   for (const std::filesystem::path& path : FolderEntries(folder)) {
     const std::string name = path.filename().string();
     const auto content = kContentOf.find(WithoutNumber(name));
     if (content == kContentOf.end()) continue;
-    files.emplace_back(name,
-                       fmt::format(fmt::runtime(content->second), ChoiceName(kLengthUnits, unit)));
+    std::string text = fmt::format(fmt::runtime(content->second), ChoiceName(kLengthUnits, unit));
+    const auto part = part_of_stem.find(path.stem().string());
+    if (part != part_of_stem.end() && !part->second.empty()) text += "; part " + part->second;
+    files.emplace_back(name, std::move(text));
   }
   return files;
 }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,8 +29,10 @@ struct ShapeOrigin {
 using DescribedFiles = std::vector<std::pair<std::string, std::string>>;
 
 // The files of a shape that are in `folder`, sorted by name. `unit` is the unit of the formats that
-// name none.
-DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit);
+// name none. `part_of_stem` has the part of each surface that has files of its own, by their name
+// without its extension.
+DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit,
+                                  const std::map<std::string, std::string>& part_of_stem = {});
 
 // `model` gives the cameras, `num_markers` is the number of whole markers, `verdict` may be null.
 // Its reasons name files without their folders. The date is OutputDate(), whose errors it throws.

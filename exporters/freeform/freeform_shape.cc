@@ -37,6 +37,15 @@ std::vector<FreeformPart> FreeformParts(const MarkerShape& shape, const Layout& 
   return parts;
 }
 
+// Says that the surface lacks markers of the part, so that its area is not that of the whole part.
+void NoteMissingMarkers(std::size_t num_whole, std::size_t num_of_part, FreeformSurface* surface) {
+  const std::size_t num_missing = num_of_part - num_whole;
+  if (num_missing == 0) return;
+  surface->notes.push_back(
+      fmt::format("{} of {} markers {} not whole; the surface ends at the others", num_missing,
+                  num_of_part, num_missing == 1 ? "is" : "are"));
+}
+
 FreeformSurface FitPart(const MarkerShape& shape, const FreeformPart& part, const Layout& layout,
                         const PointCovariance* own_covariance,
                         const std::optional<MeshOptions>& mesh, int num_threads) {
@@ -45,7 +54,9 @@ FreeformSurface FitPart(const MarkerShape& shape, const FreeformPart& part, cons
     const ShapeMarker* marker = FindWholeMarker(shape, id);
     if (marker != nullptr) markers.push_back(MakeFreeformMarker(*marker, own_covariance));
   }
-  return FitFreeformSurface(markers, layout.marker_length_m, mesh, num_threads);
+  FreeformSurface surface = FitFreeformSurface(markers, layout.marker_length_m, mesh, num_threads);
+  NoteMissingMarkers(markers.size(), part.marker_ids.size(), &surface);
+  return surface;
 }
 
 void WriteResiduals(const FreeformShape& freeform, std::ostream& out) {

@@ -130,5 +130,18 @@ TEST(ShapeJson, FilesOfFurtherPartsAreDescribedAsThoseOfTheFirst) {
                                  Pair("surface_residuals_2.csv", EndsWith(", m"))));
 }
 
+// A part without enough markers has no files, so that the numbers are not those of the layout.
+TEST(ShapeJson, FilesOfAFreeformSurfaceNameTheirPart) {
+  const TempDir dir;
+  for (const char* name : {"freeform.ply", "freeform_2.ply", "freeform_2.stl"}) {
+    std::ofstream(dir / name) << "text";
+  }
+  const DescribedFiles files = DescribeShapeFiles(dir.path(), LengthUnit::kMetre,
+                                                  {{"freeform", "face0"}, {"freeform_2", "face3"}});
+  EXPECT_THAT(files, ElementsAre(Pair("freeform.ply", EndsWith(", m; part face0")),
+                                 Pair("freeform_2.ply", EndsWith(", m; part face3")),
+                                 Pair("freeform_2.stl", EndsWith(", m; part face3"))));
+}
+
 }  // namespace
 }  // namespace velamap

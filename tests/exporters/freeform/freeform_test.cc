@@ -253,12 +253,15 @@ TEST(FreeformShape, EachPartWithoutHorizontalLinesHasItsFiles) {
   with_line.name = "sail";
   with_line.horizontal.push_back({"h1", {100, 101, 102, 103, 104}});
   layout.parts.push_back(with_line);
+  layout.parts[0].marker_ids.push_back(9);  // printed, but not in the shape
   const FreeformShape freeform = ComputeFreeform(shape, layout, nullptr, std::nullopt);
   ASSERT_EQ(freeform.surfaces.size(), 2u);
   EXPECT_EQ(freeform.surfaces[1].part, "columns");  // vertical lines alone bear no sail
   EXPECT_NEAR(freeform.surfaces[1].surface.area_m2, freeform.surfaces[0].surface.area_m2, 1e-9);
   EXPECT_NEAR(freeform.surfaces[0].surface.residuals[0].sigma_m, 1e-3, 1e-9);
-  EXPECT_THAT(freeform.notes, ElementsAre(HasSubstr("few: no surface: 1 whole markers")));
+  EXPECT_THAT(freeform.notes,
+              ElementsAre("top: 1 of 10 markers is not whole; the surface ends at the others",
+                          HasSubstr("few: no surface: 1 whole markers")));
   const TempDir dir;
   WriteFreeformFiles(freeform, {}, LengthUnit::kMetre, PlyFormat::kBinaryLittleEndian, dir.path());
   const PlyFile ply = ReadPly(TextOf(dir / "freeform.ply"));
