@@ -6,12 +6,12 @@ set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
                  ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)
 set(REPORT_CHART ${JAVASCRIPT_DIR}/chart.js/chart.min.js)
 set(REPORT_SCRIPT)
-foreach(name elements colours tables charts picture scene view3d controls main)
+foreach(name elements colours tables charts labels picture scene view3d controls main)
   list(APPEND REPORT_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
 # The page of a comparison has parts of the report's script.
 set(COMPARISON_SCRIPT)
-foreach(name elements colours tables scene view3d controls profiles comparison)
+foreach(name elements colours tables labels scene view3d controls profiles comparison)
   list(APPEND COMPARISON_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
 set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/comparison.html ${REPORT_DIR}/calibration.html

@@ -101,6 +101,9 @@ function imageChart(id, captionId, title, unit, images, value, meaning) {
 
 function scaleChart(data) {
   const known = data.markers.filter(marker => marker.scale_deviation_percent !== undefined);
+  // Round steps from zero, so that zero has its line.
+  const largest = Math.max(1e-3, ...known.map(marker => Math.abs(marker.scale_deviation_percent)));
+  const step = roundUp(largest / 3), end = step * Math.ceil(largest / step);
   addChart('chart_scale', 'Scale by marker', {
     type: 'scatter',
     data: {
@@ -112,7 +115,7 @@ function scaleChart(data) {
     options: {
       scales: {
         x: axis('marker id', {ticks: {precision: 0}}),
-        y: axis('deviation, %', {grid: {
+        y: axis('deviation, %', {min: -end, max: end, ticks: {stepSize: step, autoSkip: false}, grid: {
           color: context => pageColour(context.tick.value === 0 ? '--quiet' : '--line')}}),
       },
       plugins: {tooltip: {callbacks: {

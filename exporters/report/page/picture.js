@@ -44,27 +44,6 @@ function pictureMarkers(picture) {
   return [...sums].map(([id, sum]) => ({id, x: sum.x / sum.count, y: sum.y / sum.count}));
 }
 
-// Places of the labels of this size that cover no label before: at the marker, or the nearest free
-// place around it.
-function freePlaces(markers, size) {
-  const boxes = [];
-  return markers.map(({id, x, y}) => {
-    const width = (0.6 * String(id).length + 0.3) * size;
-    const isFree = ([left, top]) => boxes.every(([l, t, w]) =>
-        Math.abs(l - left) > (w + width) / 2 || Math.abs(t - top) > 1.1 * size);
-    const tried = [[x, y]];
-    for (let ring = 1; ring < 6; ++ring) {
-      for (let i = 0; i < 8; ++i) {
-        const angle = (i + 2) * Math.PI / 4;
-        tried.push([x + ring * 1.2 * size * Math.cos(angle), y - ring * 1.2 * size * Math.sin(angle)]);
-      }
-    }
-    const [left, top] = tried.find(isFree) || [x, y];
-    boxes.push([left, top, width]);
-    return {id, x, y, left, top};
-  });
-}
-
 // The ids beside their markers, with a line to those that are away from theirs.
 function pictureIds(picture, size) {
   return freePlaces(pictureMarkers(picture), size).flatMap(({id, x, y, left, top}) => [

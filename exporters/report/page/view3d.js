@@ -166,7 +166,7 @@ class View3D {
     this.renderer.render(this.scene, this.camera);
     this.placeAxes();
     this.placeBar();
-    if (this.idsAreOn !== undefined) this.placeIds();
+    if (this.idsAreOn !== undefined) placeIds(this);
   }
 
   // A label that the left or right border would cut is moved inside.
@@ -190,7 +190,13 @@ class View3D {
     const ratio = drawn.width / this.container.clientWidth;
     context.scale(ratio, ratio);
     Object.assign(context, {font: '12px sans-serif', textAlign: 'center', textBaseline: 'middle',
-                            fillStyle: pageColour('--ink')});
+                            fillStyle: pageColour('--ink'), strokeStyle: pageColour('--ink')});
+    for (const [x, y, left, top] of this.idLines || []) {
+      context.beginPath();
+      context.moveTo(x, y);
+      context.lineTo(left, top);
+      context.stroke();
+    }
     for (const label of this.container.querySelectorAll('#view_ids span, #view_axes span')) {
       if (!label.hidden && label.at) context.fillText(label.textContent, ...label.at);
     }
@@ -249,19 +255,6 @@ class View3D {
                          `not in the first view: ${this.outside.join(', ')} ("All cameras" shows all)`));
     }
     byId('legend').replaceChildren(...items);
-  }
-
-  // Shows the ids of the markers that face the viewer.
-  placeIds() {
-    this.markers.forEach((marker, i) => {
-      const label = byId('view_ids').children[i];
-      const [a, b, c] = marker.corners.map(x => new THREE.Vector3(...x));
-      const normal = new THREE.Vector3().crossVectors(a.clone().sub(b), c.clone().sub(b));
-      const centre = new THREE.Vector3(...marker.centre);
-      const isSeen = normal.dot(this.camera.position.clone().sub(centre)) > 0;
-      label.hidden = !this.idsAreOn || !isSeen;
-      if (!label.hidden) this.placeLabel(label, centre);
-    });
   }
 
   markerAt(event) {

@@ -77,6 +77,20 @@ cv::Mat BrowserTest::Screenshot(const std::string& page, int width, int height,
   return picture;
 }
 
+std::string EscapedForAttribute(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
 double PartThatDiffers(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat difference;
   cv::absdiff(a, b, difference);

@@ -35,6 +35,9 @@ class BrowserTest : public testing::Test {
   std::string browser_;
 };
 
+// A page as the srcdoc of an iframe.
+std::string EscapedForAttribute(const std::string& text);
+
 // Part of the pixels that differ by more than a shade.
 double PartThatDiffers(const cv::Mat& a, const cv::Mat& b);
 

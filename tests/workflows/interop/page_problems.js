@@ -33,6 +33,13 @@ function problemsOf(frame, width) {
     text.selectNodeContents(cell);
     if (cell.textContent.length < 12 && text.getClientRects().length > 2) problems.push(`letters of '${cell.textContent}' stand under each other`);
   }
+  doc.querySelector('#ids').click();
+  const ids = [...doc.querySelectorAll('#view_ids span:not([hidden])')].map(id => [id.textContent, id.getBoundingClientRect()]);
+  ids.forEach(([a, p], i) => ids.slice(0, i).forEach(([b, q]) => {
+    if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 1) problems.push(`the ids ${a} and ${b} overlap`);
+  }));
+  if (view.width > 0 && ids.length < 20) problems.push(`only ${ids.length} ids are shown`);
+  if (!frame.contentWindow.Chart.getChart('chart_scale').scales.y.ticks.some(({value}) => value === 0)) problems.push('the scales have no line at zero');
   // What a screen scrolls, paper cuts.
   for (const box of doc.querySelectorAll('.table')) {
     const isPrinted = frame.contentWindow.getComputedStyle(box).overflowX === 'visible';

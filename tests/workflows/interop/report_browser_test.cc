@@ -258,20 +258,6 @@ TEST_F(ReportBrowser, FitsAPhone) {
   EXPECT_GT(PartOfColour(page.colRange(384, 390), {0xf8, 0xf6, 0xf4}), 0.999);
 }
 
-std::string EscapedForAttribute(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&') {
-      escaped += "&amp;";
-    } else if (c == '"') {
-      escaped += "&quot;";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
-}
-
 // What page_problems.js finds in the page at each of these widths, px.
 std::vector<std::string> ReportBrowser::ProblemsOf(const std::string& page,
                                                    const std::vector<std::string>& widths) const {
