@@ -113,6 +113,22 @@ TEST_F(ComparisonBrowser, FitsAPhone) {
   EXPECT_GT(PartOfColour(page.colRange(384, 390), {0xf8, 0xf6, 0xf4}), 0.999);
 }
 
+// The words of 'Aligned by' do not push the figures off the screen.
+TEST_F(ComparisonBrowser, TheFiguresFitAPhone) {
+  Write("one.html", {"trim2"}, "trim1");
+  WriteTextFile(*dir_ / "one_phone.html",
+                "<!DOCTYPE html><body><iframe width=\"390\" height=\"3000\" srcdoc=\"" +
+                    EscapedForAttribute(ReadFileBytes(*dir_ / "one.html")) +
+                    "\"></iframe><script>" +
+                    "const frame = document.querySelector('iframe');"
+                    "frame.addEventListener('load', () => setTimeout(() => {"
+                    "const table = frame.contentDocument.querySelector('#table_shapes');"
+                    "frame.dataset.beyond_px = table.scrollWidth - table.clientWidth;"
+                    "}, 300));</script>");
+  EXPECT_THAT(Open("one_phone.html", {"--dump-dom", "--virtual-time-budget=4000"}).out,
+              HasSubstr("data-beyond_px=\"0\""));
+}
+
 TEST_F(ComparisonBrowser, FollowsADarkTheme) {
   const cv::Mat dark =
       Screenshot("comparison.html", 1400, 900, "comparison_dark.png", {"--force-dark-mode"});
