@@ -151,7 +151,7 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   WarnOfMissingSections(shape.sail.sections);
   ReportInput input =
       MakeReportInput(shape, options.importer.layout, summary.adjustment.steadiness);
-  input.title = Source(options).filename().string();
+  input.title = ReportTitle(Source(options));
   input.version = kVersion;
   input.created = DateText(OutputDate());
   input.image_path = paths.Images().string();

@@ -15,6 +15,12 @@ ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layou
   return input;
 }
 
+std::string ReportTitle(const std::filesystem::path& source) {
+  const std::filesystem::path parent = source.parent_path().filename();
+  const bool says_nothing = source.filename() == "images" && !parent.empty();
+  return (says_nothing ? parent : source.filename()).string();
+}
+
 std::vector<std::pair<std::string, std::string>> TypedOptions(
     const std::vector<std::string>& arguments) {
   std::vector<std::pair<std::string, std::string>> options;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ namespace velamap {
 // refers to `report` and `layout`, which must outlive it.
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
                             const SteadinessVerdict& steadiness);
+
+// The name of the video or of the folder of photographs; of the folder around `images`, which does
+// not say what they show.
+std::string ReportTitle(const std::filesystem::path& source);
 
 // The options as they were typed, `--name value` or `--name=value`, as pairs.
 std::vector<std::pair<std::string, std::string>> TypedOptions(

@@ -161,7 +161,7 @@ function fillMarkers(data) {
 
 function main() {
   const data = JSON.parse(byId('data').textContent);
-  byId('origin').textContent = [`velamap ${data.version}`, data.created].filter(Boolean).join(', ');
+  byId('origin').textContent = [`velamap ${data.version}`, data.created && `computed ${data.created}`].filter(Boolean).join(', ');
   fillComparisonVerdict(data.verdict);
   fillShapes(data);
   fillDistanceView(data);

@@ -50,7 +50,7 @@ function fillView(data) {
 function main() {
   const data = JSON.parse(byId('data').textContent);
   byId('origin').textContent =
-      [...data.origin, data.created, `velamap ${data.version}`].filter(Boolean).join(' · ');
+      [...data.origin, data.created && `computed ${data.created}`, `velamap ${data.version}`].filter(Boolean).join(' · ');
   fillVerdict(data.verdict);
   fillKeyNumbers(data.key_numbers);
   fillView(data);
