@@ -156,26 +156,30 @@ Names NamesOf() {
   return names;
 }
 
-// By the struct that OptionName(&Struct::member) names.
-const std::map<std::string, Names> kOptionsOfStruct = {
-    {"ArucoDetectionOptions", NamesOf<ArucoDetectionOptions>()},
-    {"BundleAdjustmentOptions", NamesOf<BundleAdjustmentOptions>()},
-    {"CodeSearchOptions", NamesOf<CodeSearchOptions>()},
-    {"GridPlacementOptions", NamesOf<GridPlacementOptions>()},
-    {"MarkerAdjustmentOptions", NamesOf<MarkerAdjustmentOptions>()},
-    {"MeshOptions", NamesOf<MeshOptions>()},
-    {"PrintSheetOptions", NamesOf<PrintSheetOptions>()},
-    {"RegistrationOptions", NamesOf<RegistrationOptions>()},
-    {"SailPlacementOptions", NamesOf<SailPlacementOptions>()},
-    {"SectionOptions", NamesOf<SectionOptions>()},
-    {"SurfaceOptions", NamesOf<SurfaceOptions>()},
-    {"VideoOptions", NamesOf<VideoOptions>()},
-};
+// By the struct that OptionName(&Struct::member) names. Made when it is asked for: the names of
+// choices, which the options refer to, need not exist while other objects are initialized.
+const std::map<std::string, Names>& OptionsOfStruct() {
+  static const std::map<std::string, Names> options = {
+      {"ArucoDetectionOptions", NamesOf<ArucoDetectionOptions>()},
+      {"BundleAdjustmentOptions", NamesOf<BundleAdjustmentOptions>()},
+      {"CodeSearchOptions", NamesOf<CodeSearchOptions>()},
+      {"GridPlacementOptions", NamesOf<GridPlacementOptions>()},
+      {"MarkerAdjustmentOptions", NamesOf<MarkerAdjustmentOptions>()},
+      {"MeshOptions", NamesOf<MeshOptions>()},
+      {"PrintSheetOptions", NamesOf<PrintSheetOptions>()},
+      {"RegistrationOptions", NamesOf<RegistrationOptions>()},
+      {"SailPlacementOptions", NamesOf<SailPlacementOptions>()},
+      {"SectionOptions", NamesOf<SectionOptions>()},
+      {"SurfaceOptions", NamesOf<SurfaceOptions>()},
+      {"VideoOptions", NamesOf<VideoOptions>()},
+  };
+  return options;
+}
 
 // The option of a member has its name, without a section, and at most lacks its unit.
 std::string OptionOfMember(const std::string& type, const std::string& member) {
-  const auto options = kOptionsOfStruct.find(type);
-  if (options == kOptionsOfStruct.end()) return type + " in kOptionsOfStruct";
+  const auto options = OptionsOfStruct().find(type);
+  if (options == OptionsOfStruct().end()) return type + " in OptionsOfStruct";
   for (const std::string& name : options->second) {
     const std::string last = name.substr(name.find('.') + 1);
     if (member == last || member.rfind(last + "_", 0) == 0) return name;
