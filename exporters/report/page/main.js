@@ -2,16 +2,12 @@
 
 // Reads the data, fills the page, and connects the controls of the 3D view.
 
-// The first factor makes a typical ellipsoid as wide as its marker in its longest direction, and
-// not less than a thirtieth of the view, so that it can be seen beside a marker that is small there.
+// The first factor makes a typical ellipsoid as long as its marker.
 function firstFactor(view) {
   const lengthOf = axis => Math.hypot(...axis);
   const known = view.markers.filter(({ellipsoid}) => ellipsoid && lengthOf(ellipsoid[2]) > 0);
   if (known.length === 0) return 0;
-  const least = sizeOf(view.main) / 60;
-  const ratios = known.map(({ellipsoid, length_mm: length}) =>
-      Math.max(length / 2000, least) / lengthOf(ellipsoid[2]));
-  const wanted = quantile(ratios, 0.5);
+  const wanted = quantile(known.map(({ellipsoid, length_mm: length}) => length / 2000 / lengthOf(ellipsoid[2])), 0.5);
   return Math.max(0, FACTORS.filter(factor => factor <= wanted).length - 1);
 }
 
