@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/comparison_page/comparison_words.h"
+#include "exporters/shape/sail_lines.h"
+#include "exporters/shape/shape_frame.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/comparison_page/page_example.h"
 
@@ -56,8 +58,11 @@ TEST(ComparisonPage, UpIsThatOfTheFrameOfTheReference) {
   const Json up = example.Data()["frame"]["up"];
   const Eigen::Vector3d up_in_reference(up[0].get<double>(), up[1].get<double>(),
                                         up[2].get<double>());
-  const Eigen::Vector3d expected = FarPose().rotation * Eigen::Vector3d::UnitZ();
-  EXPECT_LT((up_in_reference - expected).norm(), 1e-4);
+  const ShapeFrame frame = ChooseFrame(example.reference, example.layout, std::nullopt, {});
+  const Eigen::Vector3d up_in_frame = frame.frame_from_shape.rotation * up_in_reference;
+  EXPECT_EQ(frame.name, "reference part hull");
+  EXPECT_LT((up_in_frame - frame.up_in_frame.value()).norm(), 1e-4);
+  EXPECT_LT(up_in_reference.dot(SailUp(example.reference, example.layout).value()), 0.999);
 }
 
 TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
