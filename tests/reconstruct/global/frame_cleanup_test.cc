@@ -23,38 +23,13 @@ TEST(LeaveOutBlurredFrames, LeavesOutTheBlurredAlone) {
   EXPECT_THAT(grown.global.reason_of_image[15], HasSubstr("blurred"));
 }
 
-// Every `step`-th frame from `first` on is enlarged, as of a second camera.
-void ZoomEvery(std::size_t step, std::size_t first, double zoom, SyntheticScene* scene) {
-  for (std::size_t i = first; i < scene->frames.size(); i += step) {
-    ZoomFrom(i, zoom, scene);
-    ZoomFrom(i + 1, 1 / zoom, scene);
-  }
-}
-
-TEST(LeaveOutBlurredFrames, BlurContradictsNothingAndAnotherCameraDoes) {
+TEST(LeaveOutBlurredFrames, BlurContradictsNothing) {
   SyntheticScene blurred = SailWithNoise(26, false, TestSeed());
   BlurFrames(1.2, TestSeed() + 1, &blurred);
   GrownMap blurred_map(std::move(blurred));
   LeaveOutBlurredFrames(&blurred_map.global);
   EXPECT_THAT(blurred_map.LeftOutFrames(), ElementsAre(5, 15, 25));
   EXPECT_THAT(blurred_map.global.num_contradicting_of_frame, IsEmpty());
-
-  SyntheticScene zoomed = SailWithNoise(26, false, TestSeed());
-  ZoomEvery(10, 5, 1.003, &zoomed);
-  GrownMap zoomed_map(std::move(zoomed));
-  LeaveOutBlurredFrames(&zoomed_map.global);
-  EXPECT_THAT(zoomed_map.LeftOutFrames(), ElementsAre(5, 15, 25));
-  EXPECT_EQ(zoomed_map.global.num_contradicting_of_frame.size(), 3U);
-  EXPECT_THAT(zoomed_map.global.reason_of_image[15], HasSubstr("sharp, but of another camera"));
-}
-
-// As folders of two telephones that are sorted by time.
-TEST(CameraDoubt, AlternatingCamerasAreSeen) {
-  for (const double zoom : {1.1, 1.2}) {
-    SyntheticScene scene = SailWithNoise(20, false, TestSeed());
-    ZoomEvery(2, 1, zoom, &scene);
-    EXPECT_THAT(CameraDoubt(Register(scene)), HasSubstr("of another camera")) << zoom;
-  }
 }
 
 TEST(CameraDoubt, AThirdOfBlurredFramesIsNoReason) {
