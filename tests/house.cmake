@@ -93,7 +93,7 @@ house_folder(exporters/design PUBLIC
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics round_number scale_audit scale_audit_report scale_csv)
 house_folder(exporters/surface PUBLIC
-  shape_surfaces surface surface_attempt surface_csv surface_input)
+  surface surface_attempt surface_csv surface_input)
 house_folder(exporters/sail PUBLIC
   sail_shape section section_writer)
 house_folder(exporters/freeform PUBLIC

@@ -10,9 +10,9 @@
 #include "exporters/compare/deflection_field.h"
 #include "exporters/compare/section_comparison.h"
 #include "exporters/compare/shape_deviation.h"
+#include "exporters/compare/shape_surfaces.h"
 #include "exporters/compare/surface_comparison.h"
 #include "exporters/formats/metrics_report.h"
-#include "exporters/surface/shape_surfaces.h"
 
 namespace velamap {
 

@@ -16,9 +16,9 @@
 #include <Eigen/Core>
 
 #include "exporters/compare/shape_deviation.h"
+#include "exporters/compare/shape_surfaces.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/surface_grid.h"
-#include "exporters/surface/shape_surfaces.h"
 #include "importer/layout/layout.h"
 
 namespace velamap {

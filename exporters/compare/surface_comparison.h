@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "exporters/compare/shape_surfaces.h"
 #include "exporters/design/mesh_distance.h"
 #include "exporters/formats/mesh_triangles.h"
-#include "exporters/surface/shape_surfaces.h"
 #include "importer/base/statistics.h"
 #include "importer/layout/layout.h"
 

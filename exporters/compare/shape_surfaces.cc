@@ -1,4 +1,4 @@
-#include "exporters/surface/shape_surfaces.h"
+#include "exporters/compare/shape_surfaces.h"
 
 #include <algorithm>
 #include <iterator>
