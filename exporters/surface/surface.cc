@@ -12,6 +12,7 @@
 #include "exporters/surface/surface_parameters.h"
 #include "exporters/surface/surface_smoother.h"
 #include "exporters/surface/surface_terms.h"
+#include "exporters/surface/surface_trim.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -183,7 +184,7 @@ struct SurfaceFit {
 };
 
 // Fits again and again, and moves the parameters of the markers to their feet in between.
-SurfaceFit IterateFits(const SortedInput& sorted, const MarkerNoise& noise, const OpenSides& open,
+SurfaceFit IterateFits(const SortedInput& sorted, const MarkerNoise& noise,
                        SurfaceParameters* parameters) {
   const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
   SurfaceFit result;
@@ -201,7 +202,7 @@ SurfaceFit IterateFits(const SortedInput& sorted, const MarkerNoise& noise, cons
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, parameters);
     if (!interpolates) {
       if (!is_parabolic) tilt_sigma_m = TiltSigmas(parameters->observations, noise, smooth);
-      MoveMarkersToFeet(smooth.surface, open, parameters);
+      MoveMarkersToFeet(smooth.surface, parameters);
     } else if (is_parabolic) {
       MoveCornersAroundMarkers(smooth.surface, parameters);
     } else {
@@ -265,9 +266,12 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
   const bool shows_between = !sorted.markers.empty() || (!interpolates && HasTilts(sorted));
   SurfaceParameters parameters = AssignParameters(sorted.lines, shows_between, ends);
-  const OpenSides open = OpenSidesOf(parameters, ends.edges);
   SetCorners(sorted.by_id, &parameters);
-  SurfaceFit fit = IterateFits(sorted, noise, open, &parameters);
+  SurfaceFit fit = IterateFits(sorted, noise, &parameters);
+  // An interpolating surface has its ends at u and v of 0 and 1, because its markers stay there.
+  if (!interpolates) {
+    TrimToOutline(OutlineOf(fit.smooth.surface, parameters), &parameters, &fit.smooth);
+  }
   if (noise.is_nominal) {
     fit.smooth.pole_covariance_m2.resize(0, 0);
     fit.smooth.pole_by_term.resize(0, 0);

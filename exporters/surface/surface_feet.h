@@ -1,24 +1,27 @@
-// The places of the markers on the surface that is fitted to them.
+// The places of the markers on the surface that is fitted to them, and its outline around them.
 
 #pragma once
+
+#include <vector>
 
 #include "exporters/surface/surface_parameters.h"
 
 namespace velamap {
 
-// The sides on which the surface goes on beyond the markers: it is extended there, or ends at given
-// points of the edge.
-struct OpenSides {
-  Eigen::Array<bool, 2, 1> at_least, at_greatest;  // u, v
+// Places (u, v) of a surface at which the cloth ends: one per row for luff and leech, from foot to
+// head; along the outer rows for foot and head, from luff to leech.
+struct SurfaceOutline {
+  std::vector<Eigen::Vector2d> luff, leech, foot, head;
 };
-OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& edges);
 
-// Moves the markers, by their corners, to their feet on the surface, also beyond its edge. Then
-// rescales u and v of all observations so that the markers span 0 to 1 again, except at open sides,
-// where 0 or 1 is an edge beyond the markers and stays. The chord length of a marker depends on
-// where its line begins; its foot does not.
-void MoveMarkersToFeet(const SplineSurface& surface, const OpenSides& open,
-                       SurfaceParameters* parameters);
+// Continues the rows along the surface from the feet of their outer points. The feet may lie
+// beyond u and v of 0 and 1.
+SurfaceOutline OutlineOf(const SplineSurface& surface, SurfaceParameters parameters);
+
+// Moves the markers, by their corners, and the points of given edges to their feet on the surface,
+// also beyond its edge. Then rescales u and v of all of them so that they and the outline span 0 to
+// 1 again. The chord length of a marker depends on where its line begins; its foot does not.
+void MoveMarkersToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
 // For interpolating surfaces, where the markers on lines keep their chord lengths. The first
 // function moves the corners of each marker around the marker's place; they must follow a smooth

@@ -70,7 +70,9 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
     CheckExtension(options, extension_mm, length_m, "the length of the lines");
   }
   const std::vector<SurfaceRow> rows = MakeSurfaceRows(lines, options, &parameters.notes);
-  std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm.value_or(0.0)};
+  parameters.below_m = kMPerMm * options.foot_extension_mm.value_or(0.0);
+  parameters.above_m = kMPerMm * options.head_extension_mm.value_or(0.0);
+  std::vector<double> heights_m = {parameters.below_m};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
   }
@@ -80,12 +82,15 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
     CheckExtension(options, extension_mm, span_m,
                    "the distance from the lowest to the highest line");
   }
-  parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm.value_or(0.0);
+  parameters.length_v_m = heights_m.back() + parameters.above_m;
 
   std::vector<double> all_us, line_vs;
   std::size_t max_points = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const double v = heights_m[j] / parameters.length_v_m;
+    const std::size_t first = parameters.observations.size();
+    parameters.rows.push_back(
+        {first, first + rows[j].points.size() - 1, rows[j].before_m, rows[j].after_m});
     for (std::size_t k = 0; k < rows[j].points.size(); ++k) {
       const bool is_marker = rows[j].marker_ids[k] >= 0;
       parameters.observations.push_back({rows[j].marker_ids[k],

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,18 @@ struct SurfaceObservation {
   Eigen::Vector3d Center() const;  // mean of the points, shape frame, m
 };
 
+// The observations of a line or of a given edge, which are neighbours in the list, and how far the
+// surface continues before the first and after the last of them, m.
+struct ObservedRow {
+  std::size_t first_idx = 0, last_idx = 0;
+  double before_m = 0.0, after_m = 0.0;
+};
+
 struct SurfaceParameters {
   std::vector<SurfaceObservation> observations;
+  std::vector<ObservedRow> rows;  // from foot to head
+  // How far the surface continues below the first row and above the last one.
+  double below_m = 0.0, above_m = 0.0;
   int degree_u = 3, degree_v = 3;
   Eigen::ArrayXd knots_u, knots_v;
   double mean_length_u_m = 0.0, length_v_m = 0.0;

@@ -123,7 +123,9 @@ SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
       options.edges.leech, BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
       place_spacing * (line.markers.size() - 1 - present.places.back()), present.points[n - 1],
       present.points[n - 2]);
-  SurfaceRow row{line.name, present.marker_ids, present.points, {}, 0.0};
+  SurfaceRow row{line.name, present.marker_ids, present.points, {}};
+  row.before_m = luff.edge_point ? 0.0 : luff.length_m;
+  row.after_m = leech.edge_point ? 0.0 : leech.length_m;
   row.length_m = luff.length_m + lengths.back() + leech.length_m;
   for (const double length : lengths) row.us.push_back((luff.length_m + length) / row.length_m);
   if (luff.edge_point) {
@@ -140,7 +142,7 @@ SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
 }
 
 SurfaceRow MakeEdgeRow(const std::string& name, const Polyline& edge) {
-  SurfaceRow row{name, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge), 0.0};
+  SurfaceRow row{name, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge)};
   row.length_m = row.us.back();
   if (row.length_m < 1e-6) {
     throw InputError(fmt::format("the {} edge has no length; remove it", name));

@@ -18,6 +18,8 @@ struct SurfaceRow {
   std::vector<Eigen::Vector3d> points;
   std::vector<double> us;
   double length_m = 0.0;
+  // How far the surface continues before the first and after the last point.
+  double before_m = 0.0, after_m = 0.0;
 };
 
 // The places of the markers of the line that the shape has, from the luff.
