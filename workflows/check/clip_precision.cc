@@ -53,8 +53,11 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   registration_options.has_calibration = database.HasCalibration();
   adjustment_options.find_camera = !registration_options.has_calibration;
   if (adjustment_options.find_camera) {
-    cameras = FindUnknownCameras(cameras, layout, corner_errors, registration_options,
-                                 adjustment_options, &images);
+    // Few frames, because the check of a clip must not take longer than its reconstruction.
+    RegistrationOptions search = registration_options;
+    search.global.max_num_frames = 16;
+    cameras =
+        FindUnknownCameras(cameras, layout, corner_errors, search, adjustment_options, &images);
   }
   const Registration registration = RegisterFrames(images, cameras, layout, registration_options);
   const Model seed = MakeSeedModel(registration, images, cameras);
