@@ -19,7 +19,7 @@ using testing::Not;
 namespace fs = std::filesystem;
 
 const std::string kCube = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/cube/";
-const std::string kSail = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/sail/";
+const std::string kSampleSail = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/sail/";
 
 class ClipCheckerTest : public testing::Test {
  protected:
@@ -51,7 +51,7 @@ TEST_F(ClipCheckerTest, FindsTheDictionaryByItself) {
 TEST_F(ClipCheckerTest, TheDictionaryHasTheIdsOfAllFrames) {
   const std::string layout = (dir_.path() / "layout.yml").string();
   const ProgramRun run = RunVelamap(
-      {"clip_checker", "--image_path", kSail + "clip.mp4", "--proposed_layout_path", layout});
+      {"clip_checker", "--image_path", kSampleSail + "clip.mp4", "--proposed_layout_path", layout});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_4X4_250 (found by trying: "),
                              HasSubstr("; no other finds any, beyond chance)"),
