@@ -79,8 +79,9 @@ void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, O
 std::string LayoutComment(const PrintOptions& options, const PrintPlan& plan) {
   std::string comment =
       "Written by velamap marker_generator, to start from: correct what is different on your "
-      "object.\nIf the printed scale is not as long as it says, measure the black squares and set "
-      "marker_length.\nLeave drawn_length as it is: sheets that you print later follow from both.";
+      "object.\nIf the printed scale is not as long as it says, change marker_length in the same "
+      "proportion\n(do not measure the black squares: ink makes them larger).\nLeave drawn_length "
+      "as it is: sheets that you print later follow from both.";
   if (plan.board) {
     comment +=
         fmt::format("\n{} columns, {} rows, {} {}.", plan.board->num_columns, plan.board->num_rows,

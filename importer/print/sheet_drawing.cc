@@ -124,8 +124,8 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
             has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
         {left, bottom - 4.4}, TextAnchor::kStart, true, kBlack, width);
   write(
-      "If not, print again at 100 %. If that does not help, measure the black squares and "
-      "write their side, in m, as marker_length into layout.yml.",
+      "If not, print again at 100 %. If that does not help, change marker_length in layout.yml in "
+      "the proportion of the measured to the printed length.",
       {left, bottom - 0.4}, TextAnchor::kStart, false, kBlack, width);
   return drawing;
 }

@@ -46,9 +46,14 @@ bool IsDetermined(MarkerSolution trial) {
                                  ShutterCorrelationFactor(trial, *linearization));
   const double sigma_s = std::sqrt(variance) * factor;
   const double sigmas = state.rolling_shutter_s / sigma_s;
-  LogDebug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s, 1e3 * sigma_s);
-  return sigmas * sigmas > InformationCriterion(1, trial) &&
-         std::abs(state.rolling_shutter_s) > kFastest_s;
+  const bool is_determined = sigmas * sigmas > InformationCriterion(1, trial) &&
+                             std::abs(state.rolling_shutter_s) > kFastest_s;
+  // The search for a camera tries many times.
+  LogMessage(trial.options.find_camera ? LogLevel::kDebug : LogLevel::kInfo,
+             "the motion {} a rolling shutter: {:.2f} +- {:.2f} ms from the first row to the last",
+             is_determined ? "shows" : "does not show", 1e3 * state.rolling_shutter_s,
+             1e3 * sigma_s);
+  return is_determined;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct TimedFrame {
   double time_s = 0.0;  // after the frame whose corners' motions are sought
 };
 
-// That frame and those around it.
+// That frame and those around it, in the order of time.
 using FrameWindow = std::vector<TimedFrame>;
 
 // Velocity, then acceleration.
@@ -42,27 +42,43 @@ Eigen::MatrixX2d DerivativeWeights(const std::vector<double>& times_s) {
   return powers.partialPivLu().solve(derivatives);
 }
 
+// The frames of the window that show the marker: the nearest before and after, at most one more on
+// one side than on the other, because a polynomial through frames on one side is several times as
+// noisy. At the end of a marker's visibility, the frame itself and the next two.
+std::vector<const TimedFrame*> FramesThatShow(const FrameWindow& window, int marker_id) {
+  std::vector<const TimedFrame*> frames;
+  std::ptrdiff_t num_before = 0;
+  for (const TimedFrame& frame : window) {
+    if (FindMarkerById(frame.detections->markers, marker_id) == nullptr) continue;
+    frames.push_back(&frame);
+    if (frame.time_s < 0) ++num_before;
+  }
+  const std::ptrdiff_t num_after = static_cast<std::ptrdiff_t>(frames.size()) - num_before - 1;
+  const std::ptrdiff_t reach = std::max<std::ptrdiff_t>(2, std::min(num_before, num_after) + 1);
+  const auto middle = frames.begin() + num_before;
+  return {middle - std::min(reach, num_before), middle + 1 + std::min(reach, num_after)};
+}
+
 // The motion of the mean of a marker's corners. Motions of single corners are twice as noisy, and
 // noise in the velocities makes the estimated shutter time too short. Nothing unless the marker is
 // seen in three frames and, where there are such, before and after this one.
 std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_id) {
   constexpr std::size_t kMinNumFrames = 3;
+  const std::vector<const TimedFrame*> frames = FramesThatShow(window, marker_id);
+  if (frames.size() < kMinNumFrames) return std::nullopt;
   std::vector<double> times_s;
-  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(window.size()));
-  for (const TimedFrame& frame : window) {
-    const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker_id);
-    if (seen == nullptr) continue;
-    places.col(static_cast<Eigen::Index>(times_s.size())) = CornerMean(*seen);
-    times_s.push_back(frame.time_s);
+  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(frames.size()));
+  for (const TimedFrame* frame : frames) {
+    places.col(static_cast<Eigen::Index>(times_s.size())) =
+        CornerMean(*FindMarkerById(frame->detections->markers, marker_id));
+    times_s.push_back(frame->time_s);
   }
   const auto is_between = [](double first_s, double last_s) { return first_s < 0 && last_s > 0; };
-  if (times_s.size() < kMinNumFrames) return std::nullopt;
   if (is_between(window.front().time_s, window.back().time_s) &&
       !is_between(times_s.front(), times_s.back())) {
     return std::nullopt;
   }
-  const Eigen::Matrix2d derivatives =
-      places.leftCols(static_cast<Eigen::Index>(times_s.size())) * DerivativeWeights(times_s);
+  const Eigen::Matrix2d derivatives = places * DerivativeWeights(times_s);
   return MotionVector(derivatives.reshaped());
 }
 
@@ -161,23 +177,33 @@ std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
   return exposures;
 }
 
-// The frames within two exposures of exposure `idx`, none more than kLongestStep_s from the next.
-FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx) {
-  constexpr std::size_t kReach = 2;
+// The frames within `reach` exposures of exposure `idx`, none more than kLongestStep_s from the
+// next.
+FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx,
+                         std::size_t reach) {
   const auto are_near = [&](std::size_t i) {  // this one and the next
     const double step_s = exposures[i + 1].time_s - exposures[i].time_s;
     return step_s > 0 && step_s <= kLongestStep_s &&
            exposures[i].frames.front()->camera_id == exposures[i + 1].frames.front()->camera_id;
   };
   std::size_t begin = idx, end = idx + 1;
-  while (begin > 0 && begin + kReach > idx && are_near(begin - 1)) --begin;
-  while (end < exposures.size() && end <= idx + kReach && are_near(end - 1)) ++end;
+  while (begin > 0 && begin + reach > idx && are_near(begin - 1)) --begin;
+  while (end < exposures.size() && end <= idx + reach && are_near(end - 1)) ++end;
   FrameWindow window;
   for (std::size_t i = begin; i < end; ++i) {
     window.push_back(
         {&exposures[i].frames.front()->detections, exposures[i].time_s - exposures[idx].time_s});
   }
   return window;
+}
+
+// As many frames as it takes to follow a hand that trembles at 6 Hz; more would only add noise.
+FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx) {
+  constexpr double kSlow_s = 0.025;  // mean step from frame to frame
+  FrameWindow window = WindowAround(exposures, idx, 2);
+  const double span_s = window.back().time_s - window.front().time_s;
+  const bool is_slow = span_s > kSlow_s * static_cast<double>(window.size() - 1);
+  return is_slow ? WindowAround(exposures, idx, 4) : window;
 }
 
 }  // namespace

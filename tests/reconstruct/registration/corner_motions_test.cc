@@ -100,6 +100,28 @@ TEST(CornerMotions, FollowAFastShake) {
   }
 }
 
+// A hand that trembles at 6 Hz, filmed at 25 Hz.
+TEST(CornerMotions, FollowATremblingHand) {
+  const FrameDetections photograph = Photograph(4);
+  const double turn_rad_s = 2 * 3.14159265358979 * 6;
+  std::vector<DatabaseImage> frames;
+  for (int i = -6; i <= 6; ++i) {
+    DatabaseImage frame{static_cast<ImageId>(10 + i), 1, photograph};
+    frame.detections.time_s = i / 25.0;
+    for (MarkerDetection& marker : frame.detections.markers) {
+      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+        x_px.y() += 10 * std::sin(turn_rad_s * i / 25.0 + 0.5);
+      }
+    }
+    frames.push_back(frame);
+  }
+  const double expected_px_s = 10 * turn_rad_s * std::cos(0.5);
+  const CornerMotions motions = CornerMotionsOf(frames);
+  for (const CornerMotion& motion : motions.at(10)) {
+    EXPECT_NEAR(motion.velocity_px_s.y() / expected_px_s, 1, 0.03);
+  }
+}
+
 // A clip at 60 Hz whose frames show the field at `times_s`, with the noise that compression adds to
 // a repeated frame.
 std::vector<DatabaseImage> ClipOf(const std::vector<double>& times_s, std::mt19937* random) {

@@ -176,13 +176,18 @@ const std::map<std::string, Names>& OptionsOfStruct() {
   return options;
 }
 
-// The option of a member has its name, without a section, and at most lacks its unit.
+// The option of a member has its name, without a section, and at most lacks its unit or, as the
+// rows of num_rows, its first word.
 std::string OptionOfMember(const std::string& type, const std::string& member) {
+  if (type + "::" + member == "CodeSearchOptions::num_codes") return "CustomDictionary.size";
   const auto options = OptionsOfStruct().find(type);
   if (options == OptionsOfStruct().end()) return type + " in OptionsOfStruct";
   for (const std::string& name : options->second) {
     const std::string last = name.substr(name.find('.') + 1);
-    if (member == last || member.rfind(last + "_", 0) == 0) return name;
+    const std::string after_first_word = member.substr(member.find('_') + 1);
+    for (const std::string& words : {member, after_first_word}) {
+      if (words == last || words.rfind(last + "_", 0) == 0) return name;
+    }
   }
   return type + "::" + member;
 }
