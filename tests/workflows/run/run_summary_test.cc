@@ -63,7 +63,7 @@ ReconstructionSummary SummaryOfASail() {
 
 std::string TextOf(const ReconstructionSummary& summary) {
   std::ostringstream out;
-  PrintSummary(summary, WorkspacePaths{"/work"}, out);
+  PrintSummary(summary, WorkspacePaths{"/regatta"}, out);
   return out.str();
 }
 
@@ -80,7 +80,7 @@ TEST(PrintSummary, OfASailIsAtMostTenLines) {
   EXPECT_THAT(text, HasSubstr("; hull 0.3158 m2, known to "));
   EXPECT_THAT(text, HasSubstr("; 4 notes in the report\n"));
   EXPECT_THAT(text, Not(HasSubstr("continued beyond")));
-  EXPECT_THAT(text, HasSubstr("\nlook at: /work/report.html (in a browser); "));
+  EXPECT_THAT(text, HasSubstr("\nlook at: /regatta/report.html (in a browser); "));
 }
 
 TEST(PrintSummary, EachSailHasItsLine) {
