@@ -200,9 +200,8 @@ std::vector<std::string> Instructions(const Placement& placement) {
         "The places need not be exact: the order on the lines is what counts. Arrows point up."};
   }
   return {
-      "Mark where a line meets luff (from the tack) and leech (from the clew): next page. Stretch "
-      "a "
-      "string between the marks.",
+      "Mark where a line meets luff (from the tack) and leech (from the clew): next page. "
+      "Stretch a string between the marks.",
       "Numbers above the squares are ids, those below distances in m along the string, from the "
       "luff to the marker's centre.",
       "The places need not be exact to centimetres: the order on the lines is what counts. Arrows "

@@ -49,7 +49,10 @@ struct ViewParameters {
   }
   // What is added to the projection of a corner to give its residual.
   Eigen::Vector2d OffsetPx(const CornerObservation& corner) const {
-    return inset_px * corner.inset_direction + Shift(corner).value_px - corner.x_in_image_px;
+    const Eigen::Vector2d offset_px = inset_px * corner.inset_direction - corner.x_in_image_px;
+    // Most images are photographs or of cameras without a rolling shutter.
+    if (rolling_shutter_s == 0) return offset_px;
+    return offset_px + Shift(corner).value_px;
   }
 
   RowShift Shift(const CornerObservation& corner) const {

@@ -42,20 +42,27 @@ Eigen::MatrixX2d DerivativeWeights(const std::vector<double>& times_s) {
   return powers.partialPivLu().solve(derivatives);
 }
 
-// The frames of the window that show the marker: the nearest before and after, at most one more on
-// one side than on the other, because a polynomial through frames on one side is several times as
-// noisy. At the end of a marker's visibility, the frame itself and the next two.
-std::vector<const TimedFrame*> FramesThatShow(const FrameWindow& window, int marker_id) {
-  std::vector<const TimedFrame*> frames;
+// Where the mean of a marker's corners is, and when.
+struct Sighting {
+  double time_s = 0.0;
+  Eigen::Vector2d place_px;
+};
+
+// In the frames of the window that show the marker: the nearest before and after, at most one more
+// on one side than on the other, because a polynomial through frames on one side is several times
+// as noisy. At the end of a marker's visibility, in the frame itself and the next two.
+std::vector<Sighting> SightingsOf(const FrameWindow& window, int marker_id) {
+  std::vector<Sighting> all;
   std::ptrdiff_t num_before = 0;
   for (const TimedFrame& frame : window) {
-    if (FindMarkerById(frame.detections->markers, marker_id) == nullptr) continue;
-    frames.push_back(&frame);
+    const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker_id);
+    if (seen == nullptr) continue;
+    all.push_back({frame.time_s, CornerMean(*seen)});
     if (frame.time_s < 0) ++num_before;
   }
-  const std::ptrdiff_t num_after = static_cast<std::ptrdiff_t>(frames.size()) - num_before - 1;
+  const std::ptrdiff_t num_after = static_cast<std::ptrdiff_t>(all.size()) - num_before - 1;
   const std::ptrdiff_t reach = std::max<std::ptrdiff_t>(2, std::min(num_before, num_after) + 1);
-  const auto middle = frames.begin() + num_before;
+  const auto middle = all.begin() + num_before;
   return {middle - std::min(reach, num_before), middle + 1 + std::min(reach, num_after)};
 }
 
@@ -64,14 +71,13 @@ std::vector<const TimedFrame*> FramesThatShow(const FrameWindow& window, int mar
 // seen in three frames and, where there are such, before and after this one.
 std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_id) {
   constexpr std::size_t kMinNumFrames = 3;
-  const std::vector<const TimedFrame*> frames = FramesThatShow(window, marker_id);
-  if (frames.size() < kMinNumFrames) return std::nullopt;
+  const std::vector<Sighting> sightings = SightingsOf(window, marker_id);
+  if (sightings.size() < kMinNumFrames) return std::nullopt;
   std::vector<double> times_s;
-  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(frames.size()));
-  for (const TimedFrame* frame : frames) {
-    places.col(static_cast<Eigen::Index>(times_s.size())) =
-        CornerMean(*FindMarkerById(frame->detections->markers, marker_id));
-    times_s.push_back(frame->time_s);
+  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(sightings.size()));
+  for (const Sighting& sighting : sightings) {
+    places.col(static_cast<Eigen::Index>(times_s.size())) = sighting.place_px;
+    times_s.push_back(sighting.time_s);
   }
   const auto is_between = [](double first_s, double last_s) { return first_s < 0 && last_s > 0; };
   if (is_between(window.front().time_s, window.back().time_s) &&
