@@ -50,8 +50,13 @@ void MeasureLights(const ClipFrames& clip, const DetectionsByName& detections, C
   for (const Frame& frame : clip.frames) {
     const auto found = detections.find(frame.image_name);
     if (found == detections.end()) continue;
-    cv::Mat gray = frame.gray;
-    if (facts->is_inverted) cv::bitwise_not(frame.gray, gray);
+    // Not in place: the frames belong to the clip.
+    cv::Mat gray;
+    if (facts->is_inverted) {
+      cv::bitwise_not(frame.gray, gray);
+    } else {
+      gray = frame.gray;
+    }
     for (const MarkerDetection& marker : found->second->markers) {
       const auto light = MeasureLight(gray, marker.corners_in_image_px);
       if (light) lights.Add(marker.marker_id, *light, facts->is_inverted);
