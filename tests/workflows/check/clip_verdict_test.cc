@@ -89,6 +89,14 @@ std::vector<Spoilt> SpoiltPictures() {
            [](ClipFacts* facts) { facts->num_frames_damaged = 3; }}};
 }
 
+void ContradictCamera(ClipFacts* facts) {
+  CalibrationEvidence& evidence = facts->precision->calibration;
+  evidence.num_changes = 4;
+  evidence.chi_squared = 1e4;
+  evidence.systematic_px = 0.3;
+  evidence.shape_change_in_sigmas = 20;
+}
+
 std::vector<Spoilt> SpoiltPrecision() {
   return {
       {"the principal point wanders by 20 px", ReportStatus::kBad,
@@ -113,14 +121,7 @@ std::vector<Spoilt> SpoiltPrecision() {
        [](ClipFacts* facts) { facts->precision->parallax_deg = 5; }},
       {"contradicts the layout: marker 4", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->markers_left_out = {"marker 4: out of line"}; }},
-      {"the calibration does not belong to these images", ReportStatus::kBad,
-       [](ClipFacts* facts) {
-         CalibrationEvidence& evidence = facts->precision->calibration;
-         evidence.num_changes = 4;
-         evidence.chi_squared = 1e4;
-         evidence.systematic_px = 0.3;
-         evidence.shape_change_in_sigmas = 20;
-       }},
+      {"the calibration does not belong to these images", ReportStatus::kBad, ContradictCamera},
       {"only 9 of 20 markers in 40 of 40 frames fit together: the calibration", ReportStatus::kBad,
        [](ClipFacts* facts) { facts->precision->num_markers = 9; }},
       {"only 20 of 20 markers in 13 of 40 frames fit together", ReportStatus::kBad,
@@ -156,14 +157,7 @@ std::vector<Spoilt> SpoiltWithoutCalibration() {
            }},
           {"fit together: the surface moved, or the lens was zoomed", ReportStatus::kBad,
            [](ClipFacts* facts) { facts->precision->num_markers = 9; }},
-          {"film from more directions", ReportStatus::kBad,
-           [](ClipFacts* facts) {
-             CalibrationEvidence& evidence = facts->precision->calibration;
-             evidence.num_changes = 4;
-             evidence.chi_squared = 1e4;
-             evidence.systematic_px = 0.3;
-             evidence.shape_change_in_sigmas = 20;
-           }},
+          {"film from more directions", ReportStatus::kBad, ContradictCamera},
           {"the pictures hardly determine the camera", ReportStatus::kBad,
            [](ClipFacts* facts) {
              facts->precision->found_cameras = {{UnknownCamera(1920, 1080, 1000), {80, 0, 0, 0}}};
