@@ -12,7 +12,7 @@ house_folder(importer/text PUBLIC
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose directions disjoint_sets least_squares look_at opencv_pose p3p pose_refinement pose_step principal_axes
+  alignment consensus_pose directions disjoint_sets least_squares look_at opencv_pose pose_refinement pose_step principal_axes
   quad ransac rigid3 symmetric_eigen unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration calibration_writer camera camera_jacobian camera_projection storage_reader

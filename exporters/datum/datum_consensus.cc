@@ -17,8 +17,9 @@ bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& kn
 }
 
 struct DatumHypothesis {
+  DatumPose pose;
   double cost = 0.0;  // truncated sum of squared sigmas
-  DatumAgreement agreement;
+  PointSet inlier_idxs;
 };
 
 // The estimator for Ransac() in ransac.h.
@@ -33,6 +34,8 @@ class DatumConsensus {
 
   DatumConsensus(const DatumPoints& points, const PointSet& candidates)
       : points_(points), candidates_(candidates) {}
+
+  std::size_t NumData() const { return candidates_.size(); }
 
   std::vector<Model> Generate(std::mt19937* generator) const {
     PointSet rest = candidates_, sample;
@@ -55,21 +58,16 @@ class DatumConsensus {
   }
 
   DatumHypothesis Score(const Model& model) const {
-    DatumHypothesis hypothesis;
-    hypothesis.agreement.pose = AdjustPose(points_, model.sample, model.known_from_centred);
-    hypothesis.agreement.sigmas_off =
-        BaardaStatistics(points_, model.sample, hypothesis.agreement.pose.known_from_centred);
+    DatumHypothesis hypothesis{
+        AdjustPose(points_, model.sample, model.known_from_centred), 0.0, {}};
+    const std::vector<double> sigmas_off =
+        BaardaStatistics(points_, model.sample, hypothesis.pose.known_from_centred);
     for (const std::size_t i : candidates_) {
-      const double sigmas = hypothesis.agreement.sigmas_off[i];
+      const double sigmas = sigmas_off[i];
       hypothesis.cost += std::min(sigmas * sigmas, kMaxDatumSigmas * kMaxDatumSigmas);
-      if (sigmas <= kMaxDatumSigmas) hypothesis.agreement.used.push_back(i);
+      if (sigmas <= kMaxDatumSigmas) hypothesis.inlier_idxs.push_back(i);
     }
     return hypothesis;
-  }
-
-  double InlierRatio(const DatumHypothesis& hypothesis) const {
-    return static_cast<double>(hypothesis.agreement.used.size()) /
-           static_cast<double>(candidates_.size());
   }
 
  private:
@@ -133,8 +131,7 @@ std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const Poi
     const std::vector<DatumHypothesis> hypotheses =
         Ransac(RansacOptions(), DatumConsensus(points, candidates));
     if (hypotheses.empty()) return std::nullopt;
-    const DatumAgreement& best = hypotheses.front().agreement;
-    agreement = Settle(points, candidates, best.used, best.pose);
+    agreement = Settle(points, candidates, hypotheses.front().inlier_idxs, hypotheses.front().pose);
   }
   if (!IsSupported(points, candidates, agreement)) return std::nullopt;
   return agreement;

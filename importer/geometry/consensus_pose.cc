@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+#include <utility>
 
-#include "importer/geometry/p3p.h"
 #include "importer/geometry/pose_refinement.h"
 #include "importer/geometry/ransac.h"
 
@@ -52,73 +51,49 @@ Rigid3 CamFromSpace(const Rigid3& cam_from_unit, const UnitFrame& frame) {
           cam_from_unit.translation / frame.scale - cam_from_unit.rotation * frame.center_in_space};
 }
 
-struct ConsensusHypothesis {
-  Rigid3 cam_from_unit;
-  double cost = 0.0;  // truncated sum of squared errors, in sides
-  std::vector<std::size_t> agreeing_idxs;
-};
-
-// See ransac.h.
-class MarkerConsensus {
+// The markers of PoseConsensus, with errors in sides of the marker.
+class MarkersInSpace {
  public:
-  using Model = Rigid3;
-  using Hypothesis = ConsensusHypothesis;
-  static constexpr int kSampleSize = 3;
+  explicit MarkersInSpace(const std::vector<MarkerRays>& markers) : markers_(markers) {}
 
-  explicit MarkerConsensus(const std::vector<MarkerRays>& markers) : markers_(markers) {}
+  std::size_t NumSampled() const { return markers_.size(); }
+  std::size_t NumScored() const { return markers_.size(); }
 
-  std::vector<Rigid3> Generate(std::mt19937* generator) const {
-    const auto sample = SampleCorners(markers_.size(), generator);
-    if (!sample) return {};
-    std::array<Eigen::Vector3d, 3> x_in_unit;
-    std::array<Eigen::Vector2d, 3> rays;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [marker_idx, corner_idx] = (*sample)[i];
-      x_in_unit[i] = markers_[marker_idx].corners_in_space[corner_idx];
-      rays[i] = markers_[marker_idx].rays[corner_idx];
-    }
-    return SolveP3P(x_in_unit, rays);
+  std::pair<Eigen::Vector3d, Eigen::Vector2d> Corner(std::size_t marker_idx,
+                                                     std::size_t corner_idx) const {
+    const MarkerRays& marker = markers_[marker_idx];
+    return {marker.corners_in_space[corner_idx], marker.rays[corner_idx]};
   }
 
-  ConsensusHypothesis Score(const Rigid3& cam_from_unit) const {
-    ConsensusHypothesis hypothesis{cam_from_unit, 0.0, {}};
+  std::vector<double> Errors(const Rigid3& cam_from_unit) const {
     const Eigen::Matrix3d rotation = cam_from_unit.rotation.toRotationMatrix();
-    for (std::size_t i = 0; i < markers_.size(); ++i) {
-      const double error = ErrorInSides(markers_[i], rotation, cam_from_unit.translation);
-      hypothesis.cost += error < 1.0 ? error * error : 1.0;
-      if (error < 1.0) hypothesis.agreeing_idxs.push_back(i);
+    std::vector<double> errors;
+    for (const MarkerRays& marker : markers_) {
+      errors.push_back(ErrorInSides(marker, rotation, cam_from_unit.translation));
     }
-    return hypothesis;
+    return errors;
   }
 
-  double InlierRatio(const ConsensusHypothesis& hypothesis) const {
-    return static_cast<double>(hypothesis.agreeing_idxs.size()) /
-           static_cast<double>(markers_.size());
-  }
-
-  ConsensusHypothesis Refine(const ConsensusHypothesis& hypothesis) const {
-    if (!IsSupported(hypothesis)) return hypothesis;
+  // A pose that the markers do not support stays as it is.
+  Rigid3 Fit(const std::vector<int>& inlier_idxs, const Rigid3& cam_from_unit) const {
+    if (!Support(inlier_idxs)) return cam_from_unit;
     std::vector<RayObservation> observations;
-    for (const std::size_t i : hypothesis.agreeing_idxs) {
+    for (const int idx : inlier_idxs) {
+      const MarkerRays& marker = markers_[static_cast<std::size_t>(idx)];
       for (std::size_t c = 0; c < kNumCorners; ++c) {
-        observations.push_back({markers_[i].corners_in_space[c], markers_[i].rays[c]});
+        observations.push_back({marker.corners_in_space[c], marker.rays[c]});
       }
     }
-    return Score(RefinePose(observations, hypothesis.cam_from_unit));
-  }
-
-  bool HasSameInliers(const ConsensusHypothesis& a, const ConsensusHypothesis& b) const {
-    return a.agreeing_idxs == b.agreeing_idxs;
+    return RefinePose(observations, cam_from_unit);
   }
 
   // At least four markers, and half of all.
-  bool IsSupported(const ConsensusHypothesis& hypothesis) const {
-    const std::size_t num_agreeing = hypothesis.agreeing_idxs.size();
-    return num_agreeing >= kMinConsensus && 2 * num_agreeing >= markers_.size();
+  bool Support(const std::vector<int>& inlier_idxs) const {
+    return inlier_idxs.size() >= kMinConsensus && 2 * inlier_idxs.size() >= markers_.size();
   }
 
  private:
-  // The largest distance of a corner from its ray, in sides of the marker.
+  // The largest distance of a corner from its ray.
   static double ErrorInSides(const MarkerRays& marker, const Eigen::Matrix3d& rotation,
                              const Eigen::Vector3d& translation) {
     double max_error = 0.0;
@@ -135,17 +110,18 @@ class MarkerConsensus {
 
 }  // namespace
 
-std::optional<ConsensusPose> FindConsensusPose(std::vector<MarkerRays> markers) {
+std::optional<PoseHypothesis> FindConsensusPose(std::vector<MarkerRays> markers) {
   if (markers.size() < kMinConsensus) return std::nullopt;
   const std::optional<UnitFrame> frame = CenterAndScale(&markers);
   if (!frame) return std::nullopt;
-  const MarkerConsensus consensus(markers);
-  std::vector<ConsensusHypothesis> hypotheses = Ransac({}, consensus);
+  const MarkersInSpace in_space(markers);
+  const PoseConsensus<MarkersInSpace> consensus(in_space);
+  std::vector<PoseHypothesis> hypotheses = Ransac({}, consensus);
   if (hypotheses.empty()) return std::nullopt;
-  const ConsensusHypothesis best =
-      RefineHypothesis(consensus, kNumRounds, std::move(hypotheses.front()));
-  if (!consensus.IsSupported(best)) return std::nullopt;
-  return ConsensusPose{CamFromSpace(best.cam_from_unit, *frame), best.agreeing_idxs};
+  PoseHypothesis best = RefineHypothesis(consensus, kNumRounds, std::move(hypotheses.front()));
+  if (!in_space.Support(best.inlier_idxs)) return std::nullopt;
+  best.cam_from_space = CamFromSpace(best.cam_from_space, *frame);
+  return best;
 }
 
 }  // namespace velamap

@@ -43,11 +43,10 @@ inline std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
 
 // All hypotheses that were scored, by ascending cost: first those of `initial_models`, then those
 // of random samples. An Estimator has
-//   Model, Hypothesis        types; a hypothesis is a scored model with a member `cost`
-//   kSampleSize              data that determine a model
-//   Generate(generator)      models of one random sample; none for a degenerate one
-//   Score(model)             its hypothesis
-//   InlierRatio(hypothesis)  on which the number of samples depends
+//   Model, Hypothesis    types; a hypothesis is a scored model with members `cost` and
+//   `inlier_idxs` kSampleSize          data that determine a model NumData()            of which
+//   the inliers are a part Generate(generator)  models of one random sample; none for a degenerate
+//   one Score(model)         its hypothesis
 // The result depends on the seed and the input only.
 template <typename Estimator>
 std::vector<typename Estimator::Hypothesis> Ransac(
@@ -62,7 +61,8 @@ std::vector<typename Estimator::Hypothesis> Ransac(
       hypotheses.push_back(estimator.Score(model));
       if (hypotheses.size() > 1 && !(hypotheses.back().cost < hypotheses[best].cost)) continue;
       best = hypotheses.size() - 1;
-      inlier_ratio = estimator.InlierRatio(hypotheses[best]);
+      inlier_ratio = static_cast<double>(hypotheses[best].inlier_idxs.size()) /
+                     static_cast<double>(estimator.NumData());
     }
   };
   score_all(initial_models);
@@ -77,15 +77,14 @@ std::vector<typename Estimator::Hypothesis> Ransac(
 
 // Fits a hypothesis to its inliers again while that lowers its cost and changes its inliers, at
 // most `max_num_rounds` times. The Estimator also has
-//   Refine(hypothesis)              the hypothesis of the model fitted to all its inliers
-//   HasSameInliers(a, b)            whether two hypotheses have the same inliers
+//   Refine(hypothesis)   the hypothesis of the model fitted to all its inliers
 template <typename Estimator>
 typename Estimator::Hypothesis RefineHypothesis(const Estimator& estimator, int max_num_rounds,
                                                 typename Estimator::Hypothesis hypothesis) {
   for (int round = 0; round < max_num_rounds; ++round) {
     typename Estimator::Hypothesis refined = estimator.Refine(hypothesis);
     if (!(refined.cost < hypothesis.cost)) break;
-    const bool has_settled = estimator.HasSameInliers(refined, hypothesis);
+    const bool has_settled = refined.inlier_idxs == hypothesis.inlier_idxs;
     hypothesis = std::move(refined);
     if (has_settled) break;
   }

@@ -73,13 +73,13 @@ std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, c
   agreement->num_known = static_cast<int>(markers.size());
   const auto pose = FindConsensusPose(std::move(markers));
   if (!pose) return std::nullopt;
-  agreement->num_agreeing = static_cast<int>(pose->agreeing_idxs.size());
+  agreement->num_agreeing = static_cast<int>(pose->inlier_idxs.size());
   PriorShapeView view{pose->cam_from_space, {}};
-  for (const std::size_t i : pose->agreeing_idxs) {
-    const auto place_px =
-        Reproject(camera, view.cam_from_shape, prior_shape.at(known[i].marker_id));
+  for (const int idx : pose->inlier_idxs) {
+    const MarkerQuad& quad = known[static_cast<std::size_t>(idx)];
+    const auto place_px = Reproject(camera, view.cam_from_shape, prior_shape.at(quad.marker_id));
     if (!place_px) continue;
-    view.departures.push_back({QuadCenter(*place_px), QuadCenter(known[i].corners_px)});
+    view.departures.push_back({QuadCenter(*place_px), QuadCenter(quad.corners_px)});
   }
   return view;
 }

@@ -121,7 +121,7 @@ void VoteOnIds(GlobalRegistration* global) {
     const MarkerPlacement placement =
         PlaceMarker(global->problem, global->solution, marker_idx, 1.0);
     if (placement.places.empty()) continue;
-    const int num_here = static_cast<int>(placement.places.front().observation_idxs.size());
+    const int num_here = static_cast<int>(placement.places.front().inlier_idxs.size());
     const std::vector<int>& elsewhere_idxs = placement.elsewhere_idxs;
     const int num_elsewhere = static_cast<int>(elsewhere_idxs.size());
     if (num_elsewhere < kRivalRatio * num_here ||

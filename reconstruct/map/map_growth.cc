@@ -68,12 +68,12 @@ std::optional<Rigid3> FindPose(const MapProblem& problem, const MapSolution& sol
   const auto hypotheses =
       ResectFrame(problem, solution, frame_idx, tolerance_factor, options.random_seed);
   if (hypotheses.empty() || (!accept_ambiguous && IsAmbiguous(hypotheses))) return std::nullopt;
-  const double num_inliers = static_cast<double>(hypotheses.front().observation_idxs.size());
+  const double num_inliers = static_cast<double>(hypotheses.front().inlier_idxs.size());
   if (num_inliers < options.min_num_inliers ||
       num_inliers < kMinInlierRatio * NumKnown(problem, solution, frame_idx)) {
     return std::nullopt;
   }
-  return hypotheses.front().cam_from_shape;
+  return hypotheses.front().cam_from_space;
 }
 
 // Registers a batch; returns the number of frames that joined. A frame's pose depends only on the

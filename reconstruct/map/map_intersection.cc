@@ -48,7 +48,7 @@ PlaceHypothesis Evaluate(const MapProblem& problem, const std::vector<View>& vie
     const double error_px =
         ReprojectionError(problem, *view.observation, *view.cam_from_shape, shape_from_marker);
     hypothesis.cost += std::min(1.0, std::pow(error_px / tolerance_px, 2));
-    if (error_px <= tolerance_px) hypothesis.observation_idxs.push_back(view.observation_idx);
+    if (error_px <= tolerance_px) hypothesis.inlier_idxs.push_back(view.observation_idx);
   }
   return hypothesis;
 }
@@ -124,12 +124,9 @@ struct PlaceConsensus {
     return Evaluate(problem, views, tolerance_factor, shape_from_marker);
   }
   PlaceHypothesis Refine(const PlaceHypothesis& hypothesis) const {
-    if (hypothesis.observation_idxs.empty()) return hypothesis;
-    return Score(RefineMarkerPlace(problem, solution, hypothesis.observation_idxs,
-                                   hypothesis.shape_from_marker));
-  }
-  bool HasSameInliers(const PlaceHypothesis& a, const PlaceHypothesis& b) const {
-    return a.observation_idxs == b.observation_idxs;
+    if (hypothesis.inlier_idxs.empty()) return hypothesis;
+    return Score(
+        RefineMarkerPlace(problem, solution, hypothesis.inlier_idxs, hypothesis.shape_from_marker));
   }
 
   const MapProblem& problem;
@@ -189,21 +186,21 @@ MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& soluti
     return placement;
   }
   std::vector<PlaceHypothesis> ranked = RankPlaces(problem, solution, views, tolerance_factor);
-  if (ranked.empty() || ranked.front().observation_idxs.size() < 2) return placement;
+  if (ranked.empty() || ranked.front().inlier_idxs.size() < 2) return placement;
   const PlaceHypothesis best = ranked.front();
   placement.places.push_back(best);
   if (IsAmbiguous(ranked)) placement.places.push_back(ranked[1]);
   std::vector<View> elsewhere;
   for (const View& view : views) {
-    if (!std::binary_search(best.observation_idxs.begin(), best.observation_idxs.end(),
+    if (!std::binary_search(best.inlier_idxs.begin(), best.inlier_idxs.end(),
                             view.observation_idx)) {
       elsewhere.push_back(view);
     }
   }
   if (elsewhere.size() >= 2) {
     const auto others = RankPlaces(problem, solution, elsewhere, tolerance_factor);
-    if (!others.empty() && others.front().observation_idxs.size() >= 2) {
-      placement.elsewhere_idxs = others.front().observation_idxs;
+    if (!others.empty() && others.front().inlier_idxs.size() >= 2) {
+      placement.elsewhere_idxs = others.front().inlier_idxs;
     }
   }
   return placement;

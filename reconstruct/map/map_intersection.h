@@ -11,7 +11,7 @@ namespace velamap {
 struct PlaceHypothesis {
   Sim3 shape_from_marker;
   double cost = 0.0;
-  std::vector<int> observation_idxs;  // that agree with it
+  std::vector<int> inlier_idxs;  // observations that agree with it
 };
 
 struct MarkerPlacement {

@@ -1,12 +1,10 @@
 #include "reconstruct/map/map_resection.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
+#include <limits>
+#include <utility>
 
 #include "importer/base/statistics.h"
-#include "importer/geometry/p3p.h"
 #include "importer/geometry/ransac.h"
 #include "reconstruct/map/map_refinement.h"
 
@@ -42,30 +40,6 @@ std::vector<KnownMarker> FindKnown(const MapProblem& problem, const MapSolution&
   return known;
 }
 
-// Scores the pose. Where a marker has two places, the better one counts.
-PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker>& known,
-                        double tolerance_factor, const Rigid3& cam_from_shape,
-                        std::vector<PlacedObservation>* agreeing = nullptr) {
-  PoseHypothesis hypothesis{cam_from_shape, 0.0, {}};
-  for (const KnownMarker& marker : known) {
-    const Sim3* best_place = nullptr;
-    double best_error_px = tolerance_factor * GrowthTolerance(*marker.observation);
-    const double tolerance_px = best_error_px;
-    for (const Sim3& place : *marker.places) {
-      const double error_px =
-          ReprojectionError(problem, *marker.observation, cam_from_shape, place);
-      if (error_px > best_error_px) continue;
-      best_error_px = error_px;
-      best_place = &place;
-    }
-    hypothesis.cost += std::pow(best_error_px / tolerance_px, 2);
-    if (best_place == nullptr) continue;
-    hypothesis.observation_idxs.push_back(marker.observation_idx);
-    if (agreeing != nullptr) agreeing->push_back({marker.observation, best_place});
-  }
-  return hypothesis;
-}
-
 std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {
   std::vector<Rigid3> poses;
   for (const KnownMarker& marker : known) {
@@ -80,57 +54,65 @@ std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {
   return poses;
 }
 
-// See ransac.h. Scores hypotheses on `ranking`, which may be a part of the markers `known`.
-class FrameConsensus {
+// The known markers of a frame for PoseConsensus. Errors are in tolerances; where a marker has two
+// places, the better one counts.
+class FrameMarkers {
  public:
-  using Model = Rigid3;
-  using Hypothesis = PoseHypothesis;
-  static constexpr int kSampleSize = 3;
+  FrameMarkers(const MapProblem& problem, const std::vector<KnownMarker>& sampled,
+               const std::vector<KnownMarker>& scored, double tolerance_factor)
+      : problem_(problem),
+        sampled_(sampled),
+        scored_(scored),
+        tolerance_factor_(tolerance_factor) {}
 
-  FrameConsensus(const MapProblem& problem, const std::vector<KnownMarker>& known,
-                 const std::vector<KnownMarker>& ranking, double tolerance_factor)
-      : problem_(problem), known_(known), ranking_(ranking), tolerance_factor_(tolerance_factor) {}
+  std::size_t NumSampled() const { return sampled_.size(); }
+  std::size_t NumScored() const { return scored_.size(); }
 
-  // Poses that fit one corner of each of three markers exactly.
-  std::vector<Rigid3> Generate(std::mt19937* generator) const {
-    const auto sample = SampleCorners(known_.size(), generator);
-    if (!sample) return {};
-    std::array<Eigen::Vector3d, 3> x_in_shape;
-    std::array<Eigen::Vector2d, 3> rays;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [marker_idx, corner_idx] = (*sample)[i];
-      const KnownMarker& marker = known_[marker_idx];
-      x_in_shape[i] = marker.places->front() *
-                      problem_.Marker(marker.observation->marker_idx).corners_in_marker[corner_idx];
-      rays[i] = marker.observation->rays[corner_idx];
+  std::pair<Eigen::Vector3d, Eigen::Vector2d> Corner(std::size_t marker_idx,
+                                                     std::size_t corner_idx) const {
+    const auto& [observation, observation_idx, places] = sampled_[marker_idx];
+    return {
+        places->front() * problem_.Marker(observation->marker_idx).corners_in_marker[corner_idx],
+        observation->rays[corner_idx]};
+  }
+
+  std::vector<double> Errors(const Rigid3& cam_from_shape) const {
+    std::vector<double> errors;
+    for (const KnownMarker& marker : scored_) {
+      errors.push_back(BestPlace(marker, cam_from_shape).error_px /
+                       (tolerance_factor_ * GrowthTolerance(*marker.observation)));
     }
-    return SolveP3P(x_in_shape, rays);
+    return errors;
   }
 
-  PoseHypothesis Score(const Rigid3& cam_from_shape) const {
-    return Evaluate(problem_, ranking_, tolerance_factor_, cam_from_shape);
-  }
-
-  double InlierRatio(const PoseHypothesis& hypothesis) const {
-    return static_cast<double>(hypothesis.observation_idxs.size()) /
-           static_cast<double>(ranking_.size());
-  }
-
-  PoseHypothesis Refine(const PoseHypothesis& hypothesis) const {
-    std::vector<PlacedObservation> agreeing;
-    Evaluate(problem_, ranking_, tolerance_factor_, hypothesis.cam_from_shape, &agreeing);
-    if (agreeing.empty()) return hypothesis;
-    return Score(RefineFramePose(problem_, agreeing, hypothesis.cam_from_shape));
-  }
-
-  bool HasSameInliers(const PoseHypothesis& a, const PoseHypothesis& b) const {
-    return a.observation_idxs == b.observation_idxs;
+  Rigid3 Fit(const std::vector<int>& inlier_idxs, const Rigid3& cam_from_shape) const {
+    std::vector<PlacedObservation> placed;
+    for (const int idx : inlier_idxs) {
+      const KnownMarker& marker = scored_[static_cast<std::size_t>(idx)];
+      placed.push_back({marker.observation, BestPlace(marker, cam_from_shape).place});
+    }
+    return RefineFramePose(problem_, placed, cam_from_shape);
   }
 
  private:
+  struct PlaceError {
+    const Sim3* place;
+    double error_px;
+  };
+
+  PlaceError BestPlace(const KnownMarker& marker, const Rigid3& cam_from_shape) const {
+    PlaceError best{nullptr, std::numeric_limits<double>::infinity()};
+    for (const Sim3& place : *marker.places) {
+      const double error_px =
+          ReprojectionError(problem_, *marker.observation, cam_from_shape, place);
+      if (error_px <= best.error_px) best = {&place, error_px};
+    }
+    return best;
+  }
+
   const MapProblem& problem_;
-  const std::vector<KnownMarker>& known_;
-  const std::vector<KnownMarker>& ranking_;
+  const std::vector<KnownMarker>& sampled_;
+  const std::vector<KnownMarker>& scored_;
   const double tolerance_factor_;
 };
 
@@ -147,7 +129,7 @@ RansacOptions SamplingOptions(const std::vector<KnownMarker>& known, std::uint32
 }
 
 bool IsSamePose(const PoseHypothesis& a, const PoseHypothesis& b) {
-  const Rigid3 &pose_a = a.cam_from_shape, &pose_b = b.cam_from_shape;
+  const Rigid3 &pose_a = a.cam_from_space, &pose_b = b.cam_from_space;
   return AngularDistance(pose_a, pose_b) < kSameRotation &&
          (pose_a.translation - pose_b.translation).norm() <
              kSameTranslation * pose_a.translation.norm();
@@ -163,18 +145,25 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   constexpr double kCoarse = 3.0;
   constexpr int kMaxRounds = 5;
   const std::vector<KnownMarker> ranking = Thinned(known, kMaxRanking);
-  const FrameConsensus coarse(problem, known, ranking, kCoarse * tolerance_factor);
-  const FrameConsensus fine(problem, known, known, tolerance_factor);
+  const FrameMarkers coarse_markers(problem, known, ranking, kCoarse * tolerance_factor);
+  const FrameMarkers fine_markers(problem, known, known, tolerance_factor);
+  const PoseConsensus<FrameMarkers> coarse(coarse_markers), fine(fine_markers);
   std::vector<PoseHypothesis> refined;
   for (PoseHypothesis& hypothesis :
        DistinctHypotheses(Ransac(SamplingOptions(known, random_seed), coarse,
                                  SingleMarkerPoses(Thinned(known, kMaxSingles))),
                           IsSamePose, kMaxRefined)) {
     const Rigid3 cam_from_shape =
-        RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).cam_from_shape;
+        RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).cam_from_space;
     refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(cam_from_shape)));
   }
-  return DistinctHypotheses(std::move(refined), IsSamePose, kMaxHypotheses);
+  refined = DistinctHypotheses(std::move(refined), IsSamePose, kMaxHypotheses);
+  for (PoseHypothesis& hypothesis : refined) {
+    for (int& idx : hypothesis.inlier_idxs) {
+      idx = known[static_cast<std::size_t>(idx)].observation_idx;
+    }
+  }
+  return refined;
 }
 
 }  // namespace velamap

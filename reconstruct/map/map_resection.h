@@ -5,20 +5,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "importer/geometry/consensus_pose.h"
 #include "reconstruct/map/map_problem.h"
 
 namespace velamap {
 
-struct PoseHypothesis {
-  Rigid3 cam_from_shape;
-  double cost = 0.0;                  // see ResectFrame
-  std::vector<int> observation_idxs;  // that agree with it
-};
-
-// At most three distinct poses, the best first. Hypotheses come from single markers (each with its
-// planar solutions) and from corners of three markers (P3P); they are ranked by a truncated sum of
-// squares, in which an observation beyond `tolerance_factor` * GrowthTolerance counts 1, and
-// refined. Empty where the frame sees no known marker.
+// At most three distinct poses in the frame of the map, the best first; their inliers are
+// observations of the problem. Hypotheses come from single markers (each with its planar solutions)
+// and from corners of three markers (P3P); they are ranked by a truncated sum of squares, in which
+// an observation beyond `tolerance_factor` * GrowthTolerance counts 1, and refined. Empty where the
+// frame sees no known marker.
 std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolution& solution,
                                         int frame_idx, double tolerance_factor,
                                         std::uint32_t random_seed);
@@ -32,9 +28,9 @@ bool IsAmbiguous(const std::vector<Hypothesis>& hypotheses) {
   constexpr double kRatio = 2.0, kNegligible = 1e-3;
   if (hypotheses.size() < 2) return false;
   const Hypothesis &best = hypotheses[0], &rival = hypotheses[1];
-  const double num_agreeing = static_cast<double>(best.observation_idxs.size());
-  return rival.cost < kRatio * best.cost + kNegligible * num_agreeing &&
-         rival.observation_idxs.size() >= best.observation_idxs.size();
+  const double num_inliers = static_cast<double>(best.inlier_idxs.size());
+  return rival.cost < kRatio * best.cost + kNegligible * num_inliers &&
+         rival.inlier_idxs.size() >= best.inlier_idxs.size();
 }
 
 }  // namespace velamap

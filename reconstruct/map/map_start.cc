@@ -124,7 +124,7 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
        ResectFrame(problem, from_first, second, kToleranceOfOneFrame, random_seed)) {
     MapSolution solution = EmptySolution(problem);
     solution.cam_from_shape[static_cast<std::size_t>(first)] = Rigid3{};
-    solution.cam_from_shape[static_cast<std::size_t>(second)] = hypothesis.cam_from_shape;
+    solution.cam_from_shape[static_cast<std::size_t>(second)] = hypothesis.cam_from_space;
     SettlePair(problem, in_both, &solution);
     keep_better(solution);
     MapSolution reversed = ReversedRelief(solution);

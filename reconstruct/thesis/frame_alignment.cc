@@ -63,18 +63,18 @@ class AlignmentProblem {
       : shared_(std::move(shared)) {
     std::vector<Eigen::Vector3d> centers;
     for (const SharedMarker& marker : shared_) centers.push_back((*marker.in_shape)[0]);
-    use_centers_ = NumMarkers() >= kMinMarkersForCenters && HasSpread(centers);
+    use_centers_ = NumData() >= kMinMarkersForCenters && HasSpread(centers);
     min_num_inliers_ = std::max(min_num_inliers, use_centers_ ? 3 : 1);
   }
 
-  int NumMarkers() const { return static_cast<int>(shared_.size()); }
+  int NumData() const { return static_cast<int>(shared_.size()); }
   bool UseCenters() const { return use_centers_; }
   const SharedMarker& Marker(int idx) const { return shared_[static_cast<std::size_t>(idx)]; }
 
   // The alignment of the centres of three random markers.
   std::vector<Rigid3> Generate(std::mt19937* generator) const {
     const auto draw = [&] {
-      return static_cast<int>(RandomIndex(generator, static_cast<std::size_t>(NumMarkers())));
+      return static_cast<int>(RandomIndex(generator, static_cast<std::size_t>(NumData())));
     };
     const int a = draw(), b = draw(), c = draw();
     if (a == b || b == c || a == c) return {};
@@ -132,7 +132,7 @@ class AlignmentProblem {
 
   AlignmentHypothesis Score(const Rigid3& shape_from_cam) const {
     AlignmentHypothesis hypothesis{shape_from_cam, 0.0, {}};
-    for (int idx = 0; idx < NumMarkers(); ++idx) {
+    for (int idx = 0; idx < NumData(); ++idx) {
       const double relative = Error(idx, shape_from_cam) / Marker(idx).max_error_m;
       hypothesis.cost += std::min(relative * relative, 1.0);
       if (relative <= 1.0) hypothesis.inlier_idxs.push_back(idx);
@@ -140,19 +140,11 @@ class AlignmentProblem {
     return hypothesis;
   }
 
-  double InlierRatio(const AlignmentHypothesis& hypothesis) const {
-    return static_cast<double>(hypothesis.inlier_idxs.size()) / NumMarkers();
-  }
-
   // The hypothesis itself where the fit would leave it with too few inliers.
   AlignmentHypothesis Refine(const AlignmentHypothesis& hypothesis) const {
     AlignmentHypothesis refined =
         Score(FromInliers(hypothesis.inlier_idxs, hypothesis.shape_from_cam));
     return HasEnoughInliers(refined) ? refined : hypothesis;
-  }
-
-  bool HasSameInliers(const AlignmentHypothesis& a, const AlignmentHypothesis& b) const {
-    return a.inlier_idxs == b.inlier_idxs;
   }
 
   bool HasEnoughInliers(const AlignmentHypothesis& hypothesis) const {
@@ -176,7 +168,7 @@ std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoi
   constexpr int kNumSamples = 300;
   const AlignmentProblem problem(
       FindShared(frame, shape, layout, options.thesis.ransac_max_error_m), options.min_num_inliers);
-  if (problem.NumMarkers() < options.min_num_inliers) return std::nullopt;
+  if (problem.NumData() < options.min_num_inliers) return std::nullopt;
   // The thesis draws a fixed number of samples.
   const int num_samples = problem.UseCenters() ? kNumSamples : 0;
   std::vector<AlignmentHypothesis> hypotheses =
@@ -190,7 +182,7 @@ std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoi
   alignment.shape_from_cam = best.shape_from_cam;
   double sum = 0.0;
   std::size_t next_inlier = 0;
-  for (int idx = 0; idx < problem.NumMarkers(); ++idx) {
+  for (int idx = 0; idx < problem.NumData(); ++idx) {
     const bool is_inlier =
         next_inlier < best.inlier_idxs.size() && best.inlier_idxs[next_inlier] == idx;
     if (!is_inlier) {

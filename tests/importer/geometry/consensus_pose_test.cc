@@ -32,7 +32,7 @@ std::vector<MarkerRays> SeenSheet(int size, const Rigid3& cam_from_space) {
 }
 
 // Largest distance between where the two poses see a corner, as a part of a marker's side.
-double MaxError(const std::vector<MarkerRays>& markers, const ConsensusPose& pose) {
+double MaxError(const std::vector<MarkerRays>& markers, const PoseHypothesis& pose) {
   double max_error = 0.0;
   for (const MarkerRays& marker : markers) {
     for (std::size_t c = 0; c < kNumCorners; ++c) {
@@ -47,7 +47,7 @@ TEST(FindConsensusPose, NoiseFreeCornersGiveTheTruePose) {
   const std::vector<MarkerRays> markers = SeenSheet(5, TruePose(4.0));
   const auto pose = FindConsensusPose(markers);
   ASSERT_TRUE(pose);
-  EXPECT_EQ(pose->agreeing_idxs.size(), 25u);
+  EXPECT_EQ(pose->inlier_idxs.size(), 25u);
   EXPECT_LT(MaxError(markers, *pose), 1e-9);
   EXPECT_LT(AngularDistance(pose->cam_from_space, TruePose(4.0)), 1e-9);
   EXPECT_LT((pose->cam_from_space.translation - TruePose(4.0).translation).norm(), 1e-9);
@@ -85,7 +85,7 @@ TEST(FindConsensusPose, HalfMayBeWrongAndALargeOneHasNoSay) {
   }
   auto pose = FindConsensusPose(markers);
   ASSERT_TRUE(pose);
-  EXPECT_EQ(pose->agreeing_idxs, (std::vector<std::size_t>{8, 9, 10, 11, 12, 13, 14, 15}));
+  EXPECT_EQ(pose->inlier_idxs, (std::vector<int>{8, 9, 10, 11, 12, 13, 14, 15}));
 
   markers.resize(9);  // one is right
   markers[0].rays = {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1), Eigen::Vector2d(1, 1),

@@ -11,6 +11,7 @@ namespace {
 struct NumberHypothesis {
   double value = 0.0;
   double cost = 0.0;
+  std::vector<int> inlier_idxs = {};
 };
 
 struct FakeEstimator {
@@ -18,7 +19,9 @@ struct FakeEstimator {
   using Hypothesis = NumberHypothesis;
   static constexpr int kSampleSize = 3;
 
-  double inlier_ratio = 0.0;
+  int num_inliers = 0;  // of ten data
+  // The inliers change when the cost, in these units, falls below another integer.
+  double unit_of_cost = 1e-3;
   mutable int num_samples = 0;
   mutable int num_refinements = 0;
 
@@ -28,33 +31,26 @@ struct FakeEstimator {
     const double value = static_cast<double>(RandomIndex(generator, 1000));
     return {value, value + 0.5};
   }
-  NumberHypothesis Score(double value) const { return {value, std::abs(value - 300)}; }
-  double InlierRatio(const NumberHypothesis&) const { return inlier_ratio; }
+  int NumData() const { return 10; }
+  NumberHypothesis Score(double value) const {
+    const double cost = std::abs(value - 300);
+    const auto inlier = static_cast<int>(std::floor(cost / unit_of_cost));
+    return {value, cost, std::vector<int>(static_cast<std::size_t>(num_inliers), inlier)};
+  }
   // Halves the distance to 300, and overshoots once within 1.
   NumberHypothesis Refine(const NumberHypothesis& hypothesis) const {
     ++num_refinements;
     const double off = hypothesis.value - 300;
     return Score(300 + (std::abs(off) > 1 ? 0.5 * off : -2 * off));
   }
-  bool HasSameInliers(const NumberHypothesis& a, const NumberHypothesis& b) const {
-    return a.value == b.value;
-  }
-};
-
-// The tens of the distance from 300 are the inliers, which settle long before the cost does.
-struct SettlingEstimator : FakeEstimator {
-  bool HasSameInliers(const NumberHypothesis& a, const NumberHypothesis& b) const {
-    return std::floor(a.cost / 10) == std::floor(b.cost / 10);
-  }
 };
 
 TEST(Ransac, DrawsAsManySamplesAsTheInlierRatioNeeds) {
-  const std::pair<double, int> expected[] = {
-      {1.0, 12}, {0.9, 16}, {0.5, 156}, {0.2, 160}, {0, 160}};
-  for (const auto& [inlier_ratio, num_samples] : expected) {
-    const FakeEstimator estimator{inlier_ratio};
+  const std::pair<int, int> expected[] = {{10, 12}, {9, 16}, {5, 156}, {2, 160}, {0, 160}};
+  for (const auto& [num_inliers, num_samples] : expected) {
+    const FakeEstimator estimator{num_inliers};
     const auto hypotheses = Ransac({12, 160, 0}, estimator);
-    EXPECT_EQ(estimator.num_samples, num_samples) << inlier_ratio;
+    EXPECT_EQ(estimator.num_samples, num_samples) << num_inliers;
     EXPECT_EQ(hypotheses.size(), 2u * static_cast<std::size_t>(num_samples - num_samples / 4));
   }
 }
@@ -69,7 +65,7 @@ TEST(Ransac, MissesWithAProbabilityBelowOneInABillion) {
 }
 
 TEST(Ransac, HypothesesComeBestFirstWithTheInitialOnes) {
-  const FakeEstimator estimator{1.0};
+  const FakeEstimator estimator{10};
   const auto hypotheses = Ransac({12, 160, 7}, estimator, {300.25, 1e6});
   EXPECT_EQ(hypotheses.front().value, 300.25);
   EXPECT_EQ(hypotheses.back().value, 1e6);
@@ -80,21 +76,21 @@ TEST(Ransac, HypothesesComeBestFirstWithTheInitialOnes) {
 
 TEST(Ransac, SeedsDifferAndTheSameSeedRepeats) {
   const auto best = [](std::uint32_t seed) {
-    return Ransac({12, 160, seed}, FakeEstimator{1.0}).front().value;
+    return Ransac({12, 160, seed}, FakeEstimator{10}).front().value;
   };
   EXPECT_EQ(best(1), best(1));
   EXPECT_NE(best(1), best(2));
 }
 
 TEST(Ransac, WithoutSamplesTheInitialOnesAreAll) {
-  const FakeEstimator estimator{1.0};
+  const FakeEstimator estimator{10};
   EXPECT_EQ(Ransac({12, 0, 0}, estimator, {1.0, 2.0}).size(), 2u);
   EXPECT_TRUE(Ransac({0, 0, 0}, estimator).empty());
   EXPECT_EQ(estimator.num_samples, 0);
 }
 
 TEST(RefineHypothesis, GoesOnWhileTheCostFalls) {
-  const FakeEstimator estimator;
+  const FakeEstimator estimator{1};
   EXPECT_EQ(RefineHypothesis(estimator, 2, estimator.Score(308)).value, 302);
   EXPECT_EQ(estimator.num_refinements, 2);
   // 308, 304, 302, 301; the next one costs more.
@@ -103,7 +99,8 @@ TEST(RefineHypothesis, GoesOnWhileTheCostFalls) {
 }
 
 TEST(RefineHypothesis, EndsWhereTheInliersHaveSettled) {
-  const SettlingEstimator estimator;
+  // The tens of the distance from 300 settle long before the cost does.
+  const FakeEstimator estimator{1, 10.0};
   // 340, 320, 310, 305, 302.5; the last step changes no inlier.
   EXPECT_EQ(RefineHypothesis(estimator, 100, estimator.Score(340)).value, 302.5);
   EXPECT_EQ(estimator.num_refinements, 4);

@@ -34,7 +34,7 @@ TEST(PlaceMarker, ExactCornersGiveTheExactPlace) {
     ASSERT_THAT(placement.places, SizeIs(1)) << marker_idx;
     EXPECT_LT(Error(map, marker_idx, placement.places.front()), 1e-9);
     const auto& seen_idxs = map.problem.Marker(marker_idx).observation_idxs;
-    EXPECT_EQ(placement.places.front().observation_idxs, seen_idxs);
+    EXPECT_EQ(placement.places.front().inlier_idxs, seen_idxs);
     EXPECT_EQ(placement.num_seen, static_cast<int>(seen_idxs.size()));
     EXPECT_THAT(placement.elsewhere_idxs, IsEmpty());
   }
@@ -70,8 +70,7 @@ TEST(PlaceMarker, OrderOfFramesChangesNothing) {
     const auto reversed_places =
         PlaceMarker(reversed_map.problem, PosesOnly(reversed_map.TrueSolution()), marker_idx, 1.0)
             .places;
-    EXPECT_EQ(places.front().observation_idxs.size(),
-              reversed_places.front().observation_idxs.size());
+    EXPECT_EQ(places.front().inlier_idxs.size(), reversed_places.front().inlier_idxs.size());
     EXPECT_LT(
         StepBetween(places.front().shape_from_marker, reversed_places.front().shape_from_marker)
             .norm(),
@@ -85,8 +84,8 @@ TEST(PlaceMarker, ThePlaceIsTheRefinedOne) {
   const MapSolution truth = map.TrueSolution();
   for (int marker_idx = 0; marker_idx < 30; ++marker_idx) {
     const auto places = PlaceMarker(map.problem, PosesOnly(truth), marker_idx, 1.0).places;
-    EXPECT_EQ(places.front().observation_idxs, map.problem.Marker(marker_idx).observation_idxs);
-    const Sim3 refined = RefineMarkerPlace(map.problem, truth, places.front().observation_idxs,
+    EXPECT_EQ(places.front().inlier_idxs, map.problem.Marker(marker_idx).observation_idxs);
+    const Sim3 refined = RefineMarkerPlace(map.problem, truth, places.front().inlier_idxs,
                                            map.TruePlace(marker_idx));
     EXPECT_LT(StepBetween(refined, places.front().shape_from_marker).norm(), 1e-4);
   }
@@ -117,7 +116,7 @@ TEST(PlaceMarker, OneFrameGivesItsPlanarSolutions) {
   EXPECT_EQ(placement.num_seen, 1);
   EXPECT_LT(Error(map, marker_idx, placement.places.front()), 1e-6);
   for (const PlaceHypothesis& place : placement.places) {
-    EXPECT_EQ(place.observation_idxs, std::vector<int>{map.ObservationIdx(7, marker_id)});
+    EXPECT_EQ(place.inlier_idxs, std::vector<int>{map.ObservationIdx(7, marker_id)});
   }
 }
 
@@ -168,7 +167,7 @@ TEST(PlaceMarker, OneIdAtTwoPlacesHasAPlaceAndARestElsewhere) {
   const MarkerPlacement placement =
       PlaceMarker(map.problem, PosesOnly(map.TrueSolution()), marker_idx, 1.0);
   ASSERT_FALSE(placement.places.empty());
-  const auto& here = placement.places.front().observation_idxs;
+  const auto& here = placement.places.front().inlier_idxs;
   // The two groups are all observations, and none is in both.
   std::vector<int> all = here;
   all.insert(all.end(), placement.elsewhere_idxs.begin(), placement.elsewhere_idxs.end());
@@ -187,7 +186,7 @@ TEST(PlaceMarker, MarkerOfTwiceTheNominalSizeIsPlacedAsLargeAsItIs) {
       PlaceMarker(map.problem, PosesOnly(map.TrueSolution()), marker_idx, 1.0).places;
   ASSERT_FALSE(places.empty());
   EXPECT_NEAR(places.front().shape_from_marker.scale, 2.0, 0.04);
-  EXPECT_EQ(places.front().observation_idxs.size(),
+  EXPECT_EQ(places.front().inlier_idxs.size(),
             map.problem.Marker(marker_idx).observation_idxs.size());
 }
 

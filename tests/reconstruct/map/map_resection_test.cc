@@ -21,7 +21,7 @@ MapSolution Without(int frame_idx, MapSolution solution) {
 }
 
 double Error(const MapSolution& truth, int frame_idx, const PoseHypothesis& hypothesis) {
-  return StepBetween(*truth.Pose(frame_idx), hypothesis.cam_from_shape).norm();
+  return StepBetween(*truth.Pose(frame_idx), hypothesis.cam_from_space).norm();
 }
 
 TEST(ResectFrame, ExactCornersGiveTheExactPose) {
@@ -32,7 +32,7 @@ TEST(ResectFrame, ExactCornersGiveTheExactPose) {
         ResectFrame(map.problem, Without(frame_idx, truth), frame_idx, 1.0, TestSeed());
     ASSERT_FALSE(hypotheses.empty());
     EXPECT_LT(Error(truth, frame_idx, hypotheses.front()), 1e-9);
-    EXPECT_EQ(hypotheses.front().observation_idxs, map.problem.Frame(frame_idx).observation_idxs);
+    EXPECT_EQ(hypotheses.front().inlier_idxs, map.problem.Frame(frame_idx).observation_idxs);
     EXPECT_LT(hypotheses.front().cost, 1e-12);
     EXPECT_FALSE(IsAmbiguous(hypotheses));
   }
@@ -45,7 +45,7 @@ TEST(ResectFrame, HypothesesAreRankedAndFew) {
         ResectFrame(map.problem, map.TrueSolution(), frame_idx, 3.0, TestSeed());
     EXPECT_LE(hypotheses.size(), 3u);
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      const auto& idxs = hypotheses[i].observation_idxs;
+      const auto& idxs = hypotheses[i].inlier_idxs;
       EXPECT_TRUE(std::is_sorted(idxs.begin(), idxs.end()));
       // A marker that does not agree costs 1, one that does at most 1.
       const double num_known =
@@ -68,10 +68,10 @@ TEST(ResectFrame, SimilarityOfTheMapChangesNothing) {
     const auto idx = static_cast<std::size_t>(frame_idx);
     MapSolution resected = truth;
     resected.cam_from_shape[idx] =
-        ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed()).front().cam_from_shape;
+        ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed()).front().cam_from_space;
     const auto in_moved = ResectFrame(map.problem, moved, frame_idx, 1.0, TestSeed());
     EXPECT_LT(StepBetween(*Transformed(new_from_shape, resected).cam_from_shape[idx],
-                          in_moved.front().cam_from_shape)
+                          in_moved.front().cam_from_space)
                   .norm(),
               1e-5);
   }
@@ -85,8 +85,8 @@ TEST(ResectFrame, SeedDecidesNothingThatMatters) {
   for (int frame_idx = 0; frame_idx < 15; ++frame_idx) {
     const auto first = ResectFrame(map.problem, truth, frame_idx, 1.0, 1).front();
     const auto second = ResectFrame(map.problem, truth, frame_idx, 1.0, 2).front();
-    EXPECT_EQ(first.observation_idxs, second.observation_idxs);
-    EXPECT_LT(StepBetween(first.cam_from_shape, second.cam_from_shape).norm(), 1e-5);
+    EXPECT_EQ(first.inlier_idxs, second.inlier_idxs);
+    EXPECT_LT(StepBetween(first.cam_from_space, second.cam_from_space).norm(), 1e-5);
   }
 }
 
@@ -96,14 +96,14 @@ TEST(ResectFrame, ThePoseIsTheRefinedOne) {
   const MapSolution truth = map.TrueSolution();
   for (int frame_idx = 0; frame_idx < 15; ++frame_idx) {
     const auto best = ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed()).front();
-    EXPECT_EQ(best.observation_idxs, map.problem.Frame(frame_idx).observation_idxs);
+    EXPECT_EQ(best.inlier_idxs, map.problem.Frame(frame_idx).observation_idxs);
     std::vector<PlacedObservation> placed;
-    for (const int idx : best.observation_idxs) {
+    for (const int idx : best.inlier_idxs) {
       const MapObservation& observation = map.problem.Observation(idx);
       placed.push_back({&observation, &truth.Places(observation.marker_idx).front()});
     }
     const Rigid3 refined = RefineFramePose(map.problem, placed, *truth.Pose(frame_idx));
-    EXPECT_LT(StepBetween(refined, best.cam_from_shape).norm(), 1e-5);
+    EXPECT_LT(StepBetween(refined, best.cam_from_space).norm(), 1e-5);
   }
 }
 
@@ -129,7 +129,7 @@ TEST(ResectFrame, FalseIdsAndTurnedCornersAreLeftOut) {
       }
     }
     const auto hypotheses = ResectFrame(map.problem, truth, frame_idx, 1.0, TestSeed());
-    EXPECT_EQ(hypotheses.front().observation_idxs, right);
+    EXPECT_EQ(hypotheses.front().inlier_idxs, right);
     EXPECT_LT(Error(truth, frame_idx, hypotheses.front()), 1e-9);
   }
   EXPECT_GT(num_false, 100);
@@ -143,7 +143,7 @@ TEST(ResectFrame, WorksWhicheverPlanarSolutionComesFirst) {
     std::reverse(observation.cam_from_marker.begin(), observation.cam_from_marker.end());
   }
   const auto after = ResectFrame(map.problem, truth, 5, 1.0, 1).front();
-  EXPECT_LT(StepBetween(before.cam_from_shape, after.cam_from_shape).norm(), 1e-5);
+  EXPECT_LT(StepBetween(before.cam_from_space, after.cam_from_space).norm(), 1e-5);
 }
 
 TEST(ResectFrame, OfTwoPlacesTheOneThatFitsIsUsed) {
@@ -160,7 +160,7 @@ TEST(ResectFrame, OfTwoPlacesTheOneThatFitsIsUsed) {
   for (const int frame_idx : {0, 7, 14}) {
     const auto best = ResectFrame(map.problem, doubtful, frame_idx, 1.0, TestSeed()).front();
     EXPECT_LT(Error(truth, frame_idx, best), 1e-9);
-    EXPECT_EQ(best.observation_idxs, map.problem.Frame(frame_idx).observation_idxs);
+    EXPECT_EQ(best.inlier_idxs, map.problem.Frame(frame_idx).observation_idxs);
   }
 }
 
@@ -194,8 +194,8 @@ TEST(ResectFrame, OneDistantMarkerIsAmbiguous) {
     EXPECT_TRUE(IsAmbiguous(hypotheses)) << frame_idx;
     // One of the two is the right one.
     const Rigid3& true_pose = *truth.Pose(frame_idx);
-    EXPECT_LT(std::min(AngularDistance(true_pose, hypotheses[0].cam_from_shape),
-                       AngularDistance(true_pose, hypotheses[1].cam_from_shape)),
+    EXPECT_LT(std::min(AngularDistance(true_pose, hypotheses[0].cam_from_space),
+                       AngularDistance(true_pose, hypotheses[1].cam_from_space)),
               0.15);
   }
 }
