@@ -16,6 +16,7 @@
 #include "exporters/formats/float_step.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
+#include "exporters/sail/sail_metrics.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/scale/scale_csv.h"

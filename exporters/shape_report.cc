@@ -17,46 +17,11 @@ void Append(const Metrics& metrics, MetricsReport* report) {
   report->metrics.insert(report->metrics.end(), metrics.begin(), metrics.end());
 }
 
-MetricTable RigTable(const std::vector<RigNumbers>& rigs) {
-  MetricTable table{"rigs", true, {}};
-  for (const RigNumbers& rig : rigs) {
-    Metrics row = {{"part", rig.part}};
-    AddEstimate("luff_bend", "mm", rig.luff_bend_m, kMmPerM, &row);
-    AddEstimate("luff_sag", "mm", rig.luff_sag_m, kMmPerM, &row);
-    AddEstimate("sheeting_angle", "deg", rig.sheeting_angle_deg, 1.0, &row);
-    if (row.size() > 1) table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 }  // namespace
-
-void AddEstimate(const std::string& name, const std::string& unit,
-                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
-  if (!estimate) return;
-  metrics->push_back({name + '_' + unit, factor * estimate->value});
-  if (estimate->sigma) metrics->push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
-}
 
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report) {
   Append({{"frame_name", frame.name}, {"frame_description", frame.description}}, report);
   AddTexts("frame_reasons", frame.reasons, &report->metrics);
-}
-
-void AddMetrics(const SailShape& sail, MetricsReport* report) {
-  AddTexts("section_notes", sail.sections.notes, &report->metrics);
-  if (MetricTable rigs = RigTable(sail.sections.rigs); !rigs.rows.empty()) {
-    report->tables.push_back(std::move(rigs));
-  }
-  AddTexts("surface_notes", sail.surface_notes, &report->metrics);
-  if (sail.surfaces.empty()) return;
-  MetricTable table{"surfaces", true, {}};
-  for (const SailSurface& surface : sail.surfaces) {
-    table.rows.push_back({{"part", surface.part}, {"area_m2", surface.area_m2}});
-    AddSigma("surface_sigma_mm", surface.rms_sigma_m, &table.rows.back(), kMmPerM);
-    table.rows.back().push_back({"distance_mm", Scaled(kMmPerM, surface.fit.distance_m)});
-  }
-  report->tables.push_back(std::move(table));
 }
 
 void AddMetrics(const FreeformShape& freeform, MetricsReport* report) {
@@ -188,9 +153,9 @@ void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report)
           {"correlation_factor", uncertainty.correlation_factor}},
          report);
   if (uncertainty.rolling_shutter_sigma_s > 0) {
-    Append({{"rolling_shutter_ms", 1e3 * uncertainty.rolling_shutter_s},
-            {"rolling_shutter_sigma_ms", 1e3 * uncertainty.rolling_shutter_sigma_s}},
-           report);
+    AddEstimate("rolling_shutter", "ms",
+                Estimate{uncertainty.rolling_shutter_s, uncertainty.rolling_shutter_sigma_s}, 1e3,
+                &report->metrics);
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include "exporters/formats/metrics_report.h"
 #include "exporters/freeform/freeform_shape.h"
-#include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/shape/adjacent_distances.h"
@@ -20,16 +19,8 @@ namespace velamap {
 
 // Keys of sigmas exist if the sigmas are known.
 
-// Adds NAME_UNIT and NAME_sigma_UNIT, both times `factor`.
-void AddEstimate(const std::string& name, const std::string& unit,
-                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics);
-
 // Adds frame_name, frame_description, frame_reasons.
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
-
-// Adds section_notes, surface_notes and tables rigs and surfaces. The sections have their own
-// files.
-void AddMetrics(const SailShape& sail, MetricsReport* report);
 
 // Adds freeform_notes and table freeform_surfaces.
 void AddMetrics(const FreeformShape& freeform, MetricsReport* report);

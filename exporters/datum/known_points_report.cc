@@ -99,10 +99,7 @@ void AddMetrics(const KnownPointFit& fit, MetricsReport* report) {
   if (fit.residual_in_sigmas) {
     metrics.push_back({"known_point_residual_in_sigmas", *fit.residual_in_sigmas});
   }
-  if (fit.scale_change) {
-    metrics.push_back({"known_point_growth_percent", 100.0 * fit.scale_change->value});
-    metrics.push_back({"known_point_growth_sigma_percent", 100.0 * fit.scale_change->sigma});
-  }
+  AddEstimate("known_point_growth", "percent", fit.scale_change, 100.0, &metrics);
   metrics.push_back(
       {"check_point_error_mm", Distances(fit, {PointState::kPassed, PointState::kFailed})});
   metrics.push_back({"num_failed_check_points", CountPoints(fit, PointState::kFailed)});

@@ -1,6 +1,5 @@
 #include "exporters/formats/metrics_report.h"
 
-#include <optional>
 #include <ostream>
 #include <type_traits>
 
@@ -97,6 +96,13 @@ Statistics Scaled(double factor, Statistics statistics) {
 
 void AddTexts(const std::string& key, const std::vector<std::string>& texts, Metrics* metrics) {
   if (!texts.empty()) metrics->push_back({key, fmt::format("{}", fmt::join(texts, "; "))});
+}
+
+void AddEstimate(const std::string& name, const std::string& unit,
+                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
+  if (!estimate) return;
+  metrics->push_back({name + '_' + unit, factor * estimate->value});
+  if (estimate->sigma) metrics->push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
 }
 
 void PrintMetrics(const MetricsReport& report, std::ostream& out) {

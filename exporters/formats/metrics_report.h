@@ -7,6 +7,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,6 +36,10 @@ Statistics Scaled(double factor, Statistics statistics);
 
 // Adds the texts with semicolons between them; nothing without any.
 void AddTexts(const std::string& key, const std::vector<std::string>& texts, Metrics* metrics);
+
+// Adds NAME_UNIT and, if it is known, NAME_sigma_UNIT, both times `factor`.
+void AddEstimate(const std::string& name, const std::string& unit,
+                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics);
 
 struct MetricsReport {
   Metrics metrics;

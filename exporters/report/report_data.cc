@@ -13,6 +13,7 @@
 #include "exporters/report/report_histogram.h"
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_key_numbers.h"
+#include "exporters/report/report_sail.h"
 #include "exporters/report/verdict.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/error.h"
@@ -74,12 +75,6 @@ Json ScaleJson(const ScaleEstimate& scale) {
   return json;
 }
 
-Json MetricsJson(const MetricsReport& report) {
-  std::stringstream text;
-  WriteMetricsJson(report, text);
-  return Json::parse(text);
-}
-
 // An object as a list of pairs of key and value.
 Json PairsOf(const Json& object) {
   Json pairs = Json::array();
@@ -126,78 +121,6 @@ Json JsonOf(const std::vector<ReportLeftOut>& left_out) {
   return json;
 }
 
-// Adds NAME_UNIT and, if it is known, NAME_sigma_UNIT.
-void AddFigure(const std::string& name, const std::string& unit,
-               const std::optional<Estimate>& figure, Json* json) {
-  if (!figure) return;
-  (*json)[name + '_' + unit] = figure->value;
-  if (figure->sigma) (*json)[name + "_sigma_" + unit] = *figure->sigma;
-}
-
-Json ProfileJson(const std::vector<Eigen::Vector2d>& profile_m) {
-  Json json = Json::array();
-  for (const Eigen::Vector2d& x : profile_m) json.push_back({x.x(), x.y()});
-  return json;
-}
-
-Json JsonOf(const ReportSection& section) {
-  Json json = {{"name", section.name}, {"height_m", section.height_m}};
-  if (!section.note.empty()) json["note"] = section.note;
-  AddFigure("chord", "m", section.chord_m, &json);
-  AddFigure("camber", "percent", section.camber_percent, &json);
-  AddFigure("draft", "percent", section.draft_percent, &json);
-  AddFigure("entry", "deg", section.entry_deg, &json);
-  AddFigure("exit", "deg", section.exit_deg, &json);
-  AddFigure("twist", "deg", section.twist_deg, &json);
-  AddFigure("leech_twist", "deg", section.leech_twist_deg, &json);
-  AddFigure("girth", "m", section.girth_m, &json);
-  json["profile"] = ProfileJson(section.profile_m);
-  if (!section.design_m.empty()) json["design"] = ProfileJson(section.design_m);
-  if (!section.profile_in_shape_m.empty()) {
-    json["profile_in_shape"] = Json::array();
-    for (const Eigen::Vector3d& x : section.profile_in_shape_m) {
-      json["profile_in_shape"].push_back(VectorJson(x));
-    }
-  }
-  return json;
-}
-
-Json JsonOf(const RigNumbers& rig) {
-  Json json = {{"part", rig.part}};
-  AddFigure("luff_bend", "m", rig.luff_bend_m, &json);
-  AddFigure("luff_sag", "m", rig.luff_sag_m, &json);
-  AddFigure("sheeting_angle", "deg", rig.sheeting_angle_deg, &json);
-  return json;
-}
-
-// Flat lists in the format of vertex buffers, to 0.01 mm, which halves the file.
-Json JsonOf(const ReportSurface& surface) {
-  constexpr double kStepsPerM = 1e5;
-  Json json = {{"part", surface.part},
-               {"is_sail", surface.is_sail},
-               {"area_m2", surface.area_m2},
-               {"distance_mm", surface.distance_mm}};
-  if (surface.volume_m3) json["volume_m3"] = *surface.volume_m3;
-  if (surface.sigma_mm) json["sigma_mm"] = *surface.sigma_mm;
-  Json vertices = Json::array(), triangles = Json::array();
-  for (const Eigen::Vector3d& x : surface.x_in_shape_m) {
-    for (const double value : x) vertices.push_back(std::round(kStepsPerM * value) / kStepsPerM);
-  }
-  for (const auto& triangle : surface.triangles) {
-    for (const int vertex : triangle) triangles.push_back(vertex);
-  }
-  json["vertices"] = std::move(vertices);
-  json["triangles"] = std::move(triangles);
-  return json;
-}
-
-template <typename Items>
-void AddList(const std::string& name, const Items& items, Json* json) {
-  if (items.empty()) return;
-  (*json)[name] = Json::array();
-  for (const auto& item : items) (*json)[name].push_back(JsonOf(item));
-}
-
 // Camera, frame rate and duration in words.
 Json OriginJson(const ReportInput& input) {
   const Camera& camera = input.metric_model.cameras.at(input.metric_model.images.front().camera_id);
@@ -212,6 +135,12 @@ Json OriginJson(const ReportInput& input) {
 }
 
 }  // namespace
+
+Json MetricsJson(const MetricsReport& report) {
+  std::stringstream text;
+  WriteMetricsJson(report, text);
+  return Json::parse(text);
+}
 
 LeftOutImages SplitLeftOut(const std::vector<ReportLeftOut>& images) {
   LeftOutImages split;
@@ -284,16 +213,7 @@ std::string ReportJson(const ReportInput& input) {
   json["options"] = PairsJson(input.options);
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
-  AddList("sections", input.sections, &json);
-  if (!input.section_notes.empty()) json["section_notes"] = input.section_notes;
-  if (!input.surface_notes.empty()) json["surface_notes"] = input.surface_notes;
-  if (input.design) {
-    json["design"] = {{"name", input.design->name},
-                      {"num_markers", input.design->num_markers},
-                      {"distance_mm", input.design->distance_mm}};
-  }
-  AddList("rigs", input.rigs, &json);
-  AddList("surfaces", input.surfaces, &json);
+  AddSail(input, &json);
   // File names need not be UTF-8; invalid bytes are replaced.
   return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

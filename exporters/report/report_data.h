@@ -17,19 +17,17 @@
 //   images_left_out, images_not_needed, markers_left_out    name, reason
 //   picture                  name, width_px, height_px, jpeg or problem, points, rejected,
 //                            not_detected
-//   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
-//                            exit_deg, twist_deg, leech_twist_deg, girth_m with their sigmas,
-//                            profile, profile_in_shape, design
+//   sections                 rows of the table sections (sail_metrics.h), name, note, profile,
+//                            profile_in_shape, design
 //   section_notes            what concerns several sections, such as what twist counts from
 //   design                   name, num_markers, distance_mm
-//   rigs                     part, luff_bend_m, luff_sag_m, sheeting_angle_deg with their sigmas
+//   rigs                     rows of the table rigs (sail_metrics.h)
 //   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
 //                            triangles
 //   surface_notes            what there is to say about them, and why a part has none
 
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,7 +36,8 @@
 #include <Eigen/Core>
 
 #include "exporters/datum/known_points.h"
-#include "exporters/sail/section.h"
+#include "exporters/freeform/freeform_shape.h"
+#include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/scale/scale_audit.h"
@@ -64,33 +63,13 @@ struct ReportFrame {
   Eigen::Vector3d forward;  // viewing direction of the front view, unit length, normal to `up`
 };
 
-struct ReportSection {
-  std::string name;
-  std::string note;  // what the line lacks; can be empty
-  double height_m = 0.0;
-  std::optional<Estimate> chord_m, camber_percent, draft_percent, entry_deg, exit_deg, twist_deg,
-      leech_twist_deg, girth_m;
-  std::vector<Eigen::Vector2d> profile_m;           // in the section's plane, x along the chord
-  std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; can be empty
-  std::vector<Eigen::Vector2d> design_m;            // the design's, in the same plane; can be empty
-};
-
 // The design beside whose sections the measured ones are drawn.
 struct ReportDesign {
   std::string name;
   int num_markers = 0;       // over the surface of the design
   double distance_mm = 0.0;  // of these from it after the best fit, rms
-};
-
-struct ReportSurface {
-  std::string part;      // empty for all markers
-  bool is_sail = false;  // through lines of markers
-  double area_m2 = 0.0;
-  std::optional<double> volume_m3;  // of a closed one
-  double distance_mm = 0.0;         // of its markers, rms
-  std::optional<double> sigma_mm;   // rms over its area
-  std::vector<Eigen::Vector3d> x_in_shape_m;
-  std::vector<std::array<int, 3>> triangles;
+  // By section of the sail, in its plane, x along the chord; empty where the design has none.
+  std::vector<std::vector<Eigen::Vector2d>> profiles_m = {};
 };
 
 // Frame rate and duration of a video, over the frames that show markers.
@@ -106,6 +85,8 @@ struct ReportInput {
   const ShapeMetrics& metrics;
   const ModelMetrics& model_metrics;
   const ScaleEstimate& scale;
+  const SailShape& sail;
+  const FreeformShape& freeform;
   std::string title = {};
   std::string version = {};     // of the program
   std::string created = {};     // date and time; empty for none
@@ -125,12 +106,7 @@ struct ReportInput {
   // The given options and the versions of the libraries, for repeating the run.
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};
-  std::vector<ReportSection> sections = {};
-  std::vector<std::string> section_notes = {};
-  std::vector<std::string> surface_notes = {};
   std::optional<ReportDesign> design = {};
-  std::vector<RigNumbers> rigs = {};
-  std::vector<ReportSurface> surfaces = {};
   std::optional<ReportClip> clip = {};  // of a video
 };
 

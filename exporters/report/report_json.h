@@ -6,12 +6,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "exporters/formats/metrics_report.h"
 #include "exporters/report/report_data.h"
 #include "reconstruct/model/reprojection.h"
 
 namespace velamap {
 
 using ReportJsonValue = nlohmann::ordered_json;
+
+// The object of WriteMetricsJson().
+ReportJsonValue MetricsJson(const MetricsReport& report);
 
 ReportJsonValue VectorJson(const Eigen::Vector3d& vector);
 

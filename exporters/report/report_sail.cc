@@ -1,43 +1,91 @@
 #include "exporters/report/report_sail.h"
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "exporters/sail/sail_metrics.h"
 #include "exporters/sail/section_writer.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
 
+using Json = ReportJsonValue;
+
 constexpr double kMaxReportTriangles = 1e4;       // of the surface of a sail
 constexpr std::size_t kMaxFreeformDrawn = 20000;  // triangles
 constexpr double kMinHorizontal = 0.1;            // below it, a camera looks straight up or down
 
-Estimate InPercent(const Estimate& share) {
-  Estimate percent{100 * share.value, std::nullopt};
-  if (share.sigma) percent.sigma = 100 * *share.sigma;
-  return percent;
+// The rows of a table, whose keys the page reads.
+Json RowsJson(const MetricTable& table) { return MetricsJson({{}, {table}}).at(table.name); }
+
+Json SectionsJson(const std::vector<Section>& sections, const ReportDesign* design) {
+  const bool has_parts = sections.front().part != sections.back().part;
+  Json rows = RowsJson(SectionTable(sections));
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Section& section = sections[i];
+    Json& row = rows[i];
+    row["name"] = has_parts ? section.part + " " + section.name : section.name;
+    const std::string missing = MissingEndsText(section);
+    if (!missing.empty()) row["note"] = missing;
+    row["profile"] = row["profile_in_shape"] = Json::array();
+    for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
+      row["profile"].push_back({point.chordwise_m, point.depth_m});
+      row["profile_in_shape"].push_back(VectorJson(point.x_in_frame_m));
+    }
+    if (design == nullptr || design->profiles_m[i].empty()) continue;
+    row["design"] = Json::array();
+    for (const Eigen::Vector2d& x : design->profiles_m[i]) row["design"].push_back({x.x(), x.y()});
+  }
+  return rows;
 }
 
-ReportSection MakeSection(const Section& section, bool has_parts) {
-  ReportSection result;
-  result.name = has_parts ? section.part + " " + section.name : section.name;
-  result.note = MissingEndsText(section);
-  result.height_m = section.height_m;
-  result.chord_m = section.chord_m;
-  result.camber_percent = InPercent(section.camber);
-  if (section.draft_position) result.draft_percent = InPercent(*section.draft_position);
-  result.entry_deg = section.entry_angle_deg;
-  result.exit_deg = section.exit_angle_deg;
-  result.twist_deg = section.twist_deg;
-  result.leech_twist_deg = section.leech_twist_deg;
-  result.girth_m = section.girth_m;
-  for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
-    result.profile_m.emplace_back(point.chordwise_m, point.depth_m);
-    result.profile_in_shape_m.push_back(point.x_in_frame_m);
+Json SurfaceJson(const std::string& part, bool is_sail, double area_m2, double distance_m) {
+  return {{"part", part},
+          {"is_sail", is_sail},
+          {"area_m2", area_m2},
+          {"distance_mm", kMmPerM * distance_m}};
+}
+
+// Flat lists in the format of vertex buffers, to 0.01 mm, which halves the file.
+void AddMesh(const TriangleMesh& mesh, Json* surface) {
+  constexpr double kStepsPerM = 1e5;
+  Json vertices = Json::array(), triangles = Json::array();
+  for (const Eigen::Vector3d& x : mesh.vertices_m) {
+    for (const double value : x) vertices.push_back(std::round(kStepsPerM * value) / kStepsPerM);
   }
-  return result;
+  for (const auto& triangle : mesh.triangles) {
+    for (const int vertex : triangle) triangles.push_back(vertex);
+  }
+  (*surface)["vertices"] = std::move(vertices);
+  (*surface)["triangles"] = std::move(triangles);
+}
+
+Json JsonOf(const SailSurface& surface) {
+  Json json = SurfaceJson(surface.part, true, surface.area_m2, surface.fit.distance_m.rms);
+  if (surface.rms_sigma_m) json["sigma_mm"] = kMmPerM * *surface.rms_sigma_m;
+  MeshOptions options;
+  options.edge_length_mm = kMmPerM * std::sqrt(2 * surface.area_m2 / kMaxReportTriangles);
+  AddMesh(MeshSurface(surface.fit.surface, options), &json);
+  return json;
+}
+
+Json JsonOf(const PartSurface& part) {
+  const FreeformSurface& surface = part.surface;
+  Json json = SurfaceJson(part.part, false, surface.area_m2, surface.distance_m.rms);
+  if (surface.volume_m3) json["volume_m3"] = *surface.volume_m3;
+  json["sigma_mm"] = kMmPerM * surface.rms_sigma_m;
+  const bool is_drawn = surface.mesh.triangles.size() <= kMaxFreeformDrawn;
+  AddMesh(is_drawn ? surface.mesh : TriangleMesh(), &json);
+  return json;
+}
+
+void AddUnlessEmpty(const char* key, Json list, Json* json) {
+  if (!list.empty()) (*json)[key] = std::move(list);
 }
 
 }  // namespace
@@ -56,51 +104,24 @@ std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model&
   return ReportFrame{frame.name + ": " + frame.description, up, forward.normalized()};
 }
 
-std::vector<ReportSection> MakeReportSections(const SectionReport& sections) {
-  std::vector<ReportSection> result;
-  for (const Section& section : sections.sections) {
-    const bool has_parts = section.part != sections.sections.front().part ||
-                           section.part != sections.sections.back().part;
-    result.push_back(MakeSection(section, has_parts));
+void AddSail(const ReportInput& input, Json* json) {
+  const SectionReport& sections = input.sail.sections;
+  if (!sections.sections.empty()) {
+    (*json)["sections"] = SectionsJson(sections.sections, input.design ? &*input.design : nullptr);
   }
-  return result;
-}
-
-std::vector<RigNumbers> MakeReportRigs(const SectionReport& sections) {
-  std::vector<RigNumbers> result;
-  for (const RigNumbers& rig : sections.rigs) {
-    if (rig.luff_bend_m || rig.sheeting_angle_deg) result.push_back(rig);
+  AddUnlessEmpty("section_notes", sections.notes, json);
+  Json surface_notes = input.sail.surface_notes, surfaces = Json::array();
+  for (const std::string& note : input.freeform.notes) surface_notes.push_back(note);
+  AddUnlessEmpty("surface_notes", std::move(surface_notes), json);
+  if (input.design) {
+    (*json)["design"] = {{"name", input.design->name},
+                         {"num_markers", input.design->num_markers},
+                         {"distance_mm", input.design->distance_mm}};
   }
-  return result;
-}
-
-std::vector<ReportSurface> MakeReportSurfaces(const SailShape& sail,
-                                              const FreeformShape& freeform) {
-  std::vector<ReportSurface> result;
-  for (const SailSurface& surface : sail.surfaces) {
-    MeshOptions options;
-    options.edge_length_mm = kMmPerM * std::sqrt(2 * surface.area_m2 / kMaxReportTriangles);
-    TriangleMesh mesh = MeshSurface(surface.fit.surface, options);
-    result.push_back({surface.part, true, surface.area_m2, std::nullopt,
-                      kMmPerM * surface.fit.distance_m.rms, std::nullopt,
-                      std::move(mesh.vertices_m), std::move(mesh.triangles)});
-    if (surface.rms_sigma_m) result.back().sigma_mm = kMmPerM * *surface.rms_sigma_m;
-  }
-  for (const PartSurface& part : freeform.surfaces) {
-    const FreeformSurface& surface = part.surface;
-    result.push_back({part.part,
-                      false,
-                      surface.area_m2,
-                      surface.volume_m3,
-                      kMmPerM * surface.distance_m.rms,
-                      kMmPerM * surface.rms_sigma_m,
-                      {},
-                      {}});
-    if (surface.mesh.triangles.size() > kMaxFreeformDrawn) continue;
-    result.back().x_in_shape_m = surface.mesh.vertices_m;
-    result.back().triangles = surface.mesh.triangles;
-  }
-  return result;
+  AddUnlessEmpty("rigs", RowsJson(RigTable(sections.rigs)), json);
+  for (const SailSurface& surface : input.sail.surfaces) surfaces.push_back(JsonOf(surface));
+  for (const PartSurface& part : input.freeform.surfaces) surfaces.push_back(JsonOf(part));
+  AddUnlessEmpty("surfaces", std::move(surfaces), json);
 }
 
 }  // namespace velamap

@@ -26,15 +26,11 @@
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
 #include "importer/base/option.h"
+#include "importer/base/statistics.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/point_covariance.h"
 
 namespace velamap {
-
-struct Estimate {
-  double value = 0.0;
-  std::optional<double> sigma;  // 1 sigma
-};
 
 // A marker on its line.
 struct SectionMarker {

@@ -1,15 +1,14 @@
 #include "exporters/sail/section_writer.h"
 
-#include <array>
 #include <ostream>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "exporters/sail/sail_metrics.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 #include "importer/text/csv.h"
@@ -19,27 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Keys of the numbers in CSV and JSON. The key of a sigma starts with sigma_.
-using KeyedEstimates = std::array<std::pair<const char*, std::optional<Estimate>>, 8>;
-
-KeyedEstimates EstimatesOf(const Section& section) {
-  return {{{"chord_m", section.chord_m},
-           {"camber", section.camber},
-           {"draft_position", section.draft_position},
-           {"entry_angle_deg", section.entry_angle_deg},
-           {"exit_angle_deg", section.exit_angle_deg},
-           {"twist_deg", section.twist_deg},
-           {"leech_twist_deg", section.leech_twist_deg},
-           {"girth_m", section.girth_m}}};
-}
-
 double ResidualRmsMm(const Section& section) {
   std::vector<double> residuals_m;
   for (const SectionMarker& marker : section.markers) residuals_m.push_back(marker.residual_m);
   return kMmPerM * Rms(residuals_m);
 }
 
-void AddEstimate(const std::string& key, const std::optional<Estimate>& estimate, Json* object) {
+// Files of sections have the key of a sigma in front of that of its number, as in shape.csv.
+void AddKeys(const std::string& key, const std::optional<Estimate>& estimate, Json* object) {
   if (!estimate) return;
   (*object)[key] = estimate->value;
   if (estimate->sigma) (*object)["sigma_" + key] = *estimate->sigma;
@@ -51,9 +37,9 @@ Json RigJson(const RigNumbers& rig) {
                  {"up_reference", rig.up_reference},
                  {"aft_reference", rig.aft_reference}};
   if (!rig.reference_section.empty()) object["reference_section"] = rig.reference_section;
-  AddEstimate("luff_bend_m", rig.luff_bend_m, &object);
-  AddEstimate("luff_sag_m", rig.luff_sag_m, &object);
-  AddEstimate("sheeting_angle_deg", rig.sheeting_angle_deg, &object);
+  AddKeys("luff_bend_m", rig.luff_bend_m, &object);
+  AddKeys("luff_sag_m", rig.luff_sag_m, &object);
+  AddKeys("sheeting_angle_deg", rig.sheeting_angle_deg, &object);
   object["luff_markers"] = rig.luff_marker_ids;
   return object;
 }
@@ -63,7 +49,8 @@ void WriteSectionRecord(const Section& section, CsvWriter* csv) {
   csv->AddField(section.name);
   csv->AddField(section.height_m);
   csv->AddField(section.is_line ? std::optional(section.markers.size()) : std::nullopt);
-  for (const auto& [key, estimate] : EstimatesOf(section)) {
+  for (const SectionColumn& column : SectionColumns(section)) {
+    const std::optional<Estimate>& estimate = column.estimate;
     csv->AddField(estimate ? std::optional(estimate->value) : std::nullopt);
     csv->AddField(estimate ? estimate->sigma : std::nullopt);
   }
@@ -75,7 +62,7 @@ void WriteSectionRecord(const Section& section, CsvWriter* csv) {
 }
 
 void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
-  constexpr std::size_t kNumEmpty = 2 + 2 * std::tuple_size_v<KeyedEstimates> + 3;
+  constexpr std::size_t kNumEmpty = 2 + 2 * std::tuple_size_v<decltype(SectionColumns({}))> + 3;
   csv->AddField(missing.part);
   csv->AddField(missing.name);
   for (std::size_t i = 0; i < kNumEmpty; ++i) csv->AddField("");
@@ -88,9 +75,9 @@ void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
 void WriteSectionsCsv(const SectionReport& report, std::ostream& out) {
   CsvWriter csv(out);
   for (const char* key : {"part", "section", "height_m", "num_markers"}) csv.AddField(key);
-  for (const auto& [key, estimate] : EstimatesOf({})) {
-    csv.AddField(key);
-    csv.AddField(fmt::format("sigma_{}", key));
+  for (const SectionColumn& column : SectionColumns({})) {
+    csv.AddField(column.file_key);
+    csv.AddField(fmt::format("sigma_{}", column.file_key));
   }
   for (const char* key :
        {"residual_rms_mm", "num_missing_at_luff", "num_missing_at_leech", "reason"}) {
@@ -110,7 +97,9 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
   for (const Section& section : report.sections) {
     Json object = {
         {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
-    for (const auto& [key, estimate] : EstimatesOf(section)) AddEstimate(key, estimate, &object);
+    for (const SectionColumn& column : SectionColumns(section)) {
+      AddKeys(column.file_key, column.estimate, &object);
+    }
     object["num_missing_at_luff"] = section.num_missing_at_luff;
     object["num_missing_at_leech"] = section.num_missing_at_leech;
     if (section.is_line) {

@@ -14,20 +14,6 @@
 namespace velamap {
 namespace {
 
-// Adds `value` as KEY_percent and its sigma, if known, as KEY_sigma_percent.
-void AddPercent(const std::string& key, double value, const std::optional<double>& sigma,
-                Metrics* metrics) {
-  metrics->push_back({key + "_percent", 100.0 * value});
-  if (sigma) metrics->push_back({key + "_sigma_percent", 100.0 * *sigma});
-}
-
-void AddEstimate(const std::string& key, const char* unit,
-                 const std::optional<UncertainValue>& estimate, Metrics* metrics) {
-  if (!estimate) return;
-  metrics->push_back({key + "_" + unit, estimate->value});
-  metrics->push_back({key + "_sigma_" + unit, estimate->sigma});
-}
-
 std::vector<const MarkerScale*> DisagreeingMarkers(const ScaleAudit& audit) {
   std::vector<const MarkerScale*> markers;
   for (const MarkerScale& marker : audit.markers) {
@@ -41,7 +27,7 @@ Metrics MarkerRow(const MarkerScale& marker) {
                  {"part", marker.part},
                  {"layout_length_mm", marker.length_m * kMmPerM},
                  {"side_mm", marker.side_m * kMmPerM}};
-  AddPercent("deviation", marker.deviation, marker.sigma, &row);
+  AddEstimate("deviation", "percent", Estimate{marker.deviation, marker.sigma}, 100.0, &row);
   row.push_back({"sigmas_off", marker.sigmas_off});
   if (marker.side_px) row.push_back({"side_px", *marker.side_px});
   return row;
@@ -49,7 +35,8 @@ Metrics MarkerRow(const MarkerScale& marker) {
 
 Metrics GroupRow(Metric name, const GroupScale& group) {
   Metrics row = {std::move(name), {"num_markers", group.num_markers}};
-  AddPercent("deviation_from_others", group.deviation, group.sigma, &row);
+  AddEstimate("deviation_from_others", "percent", Estimate{group.deviation, group.sigma}, 100.0,
+              &row);
   return row;
 }
 
@@ -71,21 +58,25 @@ Metrics DistanceRow(const CheckedDistance& checked) {
 
 void AddFigures(const ScaleAudit& audit, Metrics* metrics) {
   if (!audit.markers.empty()) {
-    AddPercent("marker_scale_deviation", audit.deviation, audit.deviation_sigma, metrics);
+    AddEstimate("marker_scale_deviation", "percent",
+                Estimate{audit.deviation, audit.deviation_sigma}, 100.0, metrics);
     metrics->push_back({"marker_scale_spread_percent", 100.0 * audit.marker_spread});
     std::vector<int> ids;
     for (const MarkerScale* marker : DisagreeingMarkers(audit)) ids.push_back(marker->marker_id);
     metrics->push_back({"num_disagreeing_markers", static_cast<int>(ids.size())});
     metrics->push_back({"disagreeing_marker_ids", ids});
   }
-  if (audit.x_over_y) AddPercent("x_over_y", *audit.x_over_y - 1, audit.x_over_y_sigma, metrics);
+  if (audit.x_over_y)
+    AddEstimate("x_over_y", "percent", Estimate{*audit.x_over_y - 1, audit.x_over_y_sigma}, 100.0,
+                metrics);
   metrics->push_back({"spread_note", audit.spread.note});
-  AddEstimate("print_spread", "um", audit.spread.print_um, metrics);
-  AddEstimate("image_spread", "px", audit.spread.image_px, metrics);
-  AddEstimate("apparent_inset", "px", audit.apparent_inset_px, metrics);
+  AddEstimate("print_spread", "um", audit.spread.print_um, 1.0, metrics);
+  AddEstimate("image_spread", "px", audit.spread.image_px, 1.0, metrics);
+  AddEstimate("apparent_inset", "px", audit.apparent_inset_px, 1.0, metrics);
   if (audit.distance_deviation) {
-    AddPercent("known_distance_deviation", *audit.distance_deviation,
-               audit.distance_deviation_sigma, metrics);
+    AddEstimate("known_distance_deviation", "percent",
+                Estimate{*audit.distance_deviation, audit.distance_deviation_sigma}, 100.0,
+                metrics);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace velamap {
@@ -19,10 +20,18 @@ struct Statistics {
   double MaxAbs() const;  // the largest absolute value
 };
 
+// A value and its 1 sigma, which can be unknown.
+struct Estimate {
+  double value = 0.0;
+  std::optional<double> sigma;
+};
+
 // A value and its 1 sigma.
 struct UncertainValue {
   double value = 0.0;
   double sigma = 0.0;
+
+  operator Estimate() const { return {value, sigma}; }
 };
 
 // All zero for no values.

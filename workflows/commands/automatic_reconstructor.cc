@@ -156,12 +156,7 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.created = DateText(OutputDate());
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
-  input.sections = MakeReportSections(shape.sail.sections);
-  input.section_notes = shape.sail.sections.notes;
-  input.rigs = MakeReportRigs(shape.sail.sections);
-  input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
-  input.surface_notes = SurfaceNotes(shape);
-  for (const std::string& note : input.surface_notes) LogInfo("surface of {}", note);
+  for (const std::string& note : SurfaceNotes(shape)) LogInfo("surface of {}", note);
   input.clip = seed.clip;
   input.images_left_out = summary.left_out;
   input.markers_left_out = NamedById(summary.dropped_markers);

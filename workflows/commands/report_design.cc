@@ -40,17 +40,18 @@ void FitDesign(const DesignOptions& options, const MeshDistance& design,
   MoveShape(Inverse(deviation.alignment.reference_from_shape), nullptr, &of_design);
   const SectionReport sections =
       ComputeSections(of_design, shape.frame, layout, nullptr, section_options);
-  for (std::size_t i = 0; i < input->sections.size(); ++i) {
-    const Section& measured = shape.sail.sections.sections[i];
+  ReportDesign result{std::filesystem::path(options.path).filename().string(),
+                      deviation.distance_m.count, kMmPerM * deviation.distance_m.rms};
+  for (const Section& measured : shape.sail.sections.sections) {
+    std::vector<Eigen::Vector2d>& profile_m = result.profiles_m.emplace_back();
     const Section* planned = FindSection(sections, measured.part, measured.name);
     if (planned == nullptr) continue;
     for (const ProfilePoint& point : SampleProfile(*planned, kNumProfilePoints)) {
       const ProfilePoint placed = ProfilePointOf(measured, point.x_in_frame_m);
-      input->sections[i].design_m.emplace_back(placed.chordwise_m, placed.depth_m);
+      profile_m.emplace_back(placed.chordwise_m, placed.depth_m);
     }
   }
-  input->design = ReportDesign{std::filesystem::path(options.path).filename().string(),
-                               deviation.distance_m.count, kMmPerM * deviation.distance_m.rms};
+  input->design = std::move(result);
 }
 
 }  // namespace

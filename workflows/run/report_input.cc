@@ -6,8 +6,8 @@ namespace velamap {
 
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
                             const SteadinessVerdict& steadiness) {
-  ReportInput input{report.metric_model,  layout,      report.shape, report.metrics,
-                    report.model_metrics, report.scale};
+  ReportInput input{report.metric_model,  layout,       report.shape, report.metrics,
+                    report.model_metrics, report.scale, report.sail,  report.freeform};
   input.uncertainty = report.uncertainty ? &*report.uncertainty : nullptr;
   input.audit = &report.audit;
   input.steadiness = steadiness;

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "exporters/datum/known_points_report.h"
+#include "exporters/sail/sail_metrics.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/shape_report.h"
@@ -152,26 +153,6 @@ MetricTable LeftOutTable(const std::string& table, const std::string& key, const
   for (const auto& item : items)
     result.rows.push_back({{key, name(item)}, {"reason", item.reason}});
   return result;
-}
-
-MetricTable SectionTable(const std::vector<Section>& sections) {
-  MetricTable table{"sections", true, {}};
-  for (const Section& section : sections) {
-    Metrics row = {
-        {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
-    AddEstimate("chord", "m", section.chord_m, 1.0, &row);
-    AddEstimate("camber", "percent", section.camber, 100.0, &row);
-    AddEstimate("draft", "percent", section.draft_position, 100.0, &row);
-    AddEstimate("entry_angle", "deg", section.entry_angle_deg, 1.0, &row);
-    AddEstimate("exit_angle", "deg", section.exit_angle_deg, 1.0, &row);
-    AddEstimate("twist", "deg", section.twist_deg, 1.0, &row);
-    AddEstimate("leech_twist", "deg", section.leech_twist_deg, 1.0, &row);
-    AddEstimate("girth", "m", section.girth_m, 1.0, &row);
-    row.push_back({"num_missing_at_luff", section.num_missing_at_luff});
-    row.push_back({"num_missing_at_leech", section.num_missing_at_leech});
-    table.rows.push_back(std::move(row));
-  }
-  return table;
 }
 
 }  // namespace

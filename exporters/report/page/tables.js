@@ -155,8 +155,8 @@ function fillRigs(rigs) {
   byId('table_rigs').hidden = byId('note_rigs').hidden = false;
   fillTable('table_rigs', [
     text('Rig', 'part'),
-    figure('Luff bend forwards, mm', 'luff_bend', 'm', 1, 1000),
-    figure('Luff sag to leeward, mm', 'luff_sag', 'm', 1, 1000),
+    figure('Luff bend forwards, mm', 'luff_bend', 'mm', 1, 1),
+    figure('Luff sag to leeward, mm', 'luff_sag', 'mm', 1, 1),
     figure('Sheeting angle, °', 'sheeting_angle', 'deg', 2, 1),
   ].filter(column => rigs.some(row => column.value(row) !== undefined)), rigs);
 }
@@ -213,8 +213,8 @@ function fillSections({sections, section_notes: notes, design}) {
     figure('Chord, mm', 'chord', 'm', 1, 1000),
     figure('Camber, %', 'camber', 'percent', 2, 1),
     figure('Draft, %', 'draft', 'percent', 1, 1),
-    figure('Entry, °', 'entry', 'deg', 1, 1),
-    figure('Exit, °', 'exit', 'deg', 1, 1),
+    figure('Entry, °', 'entry_angle', 'deg', 1, 1),
+    figure('Exit, °', 'exit_angle', 'deg', 1, 1),
     figure('Twist, °', 'twist', 'deg', 2, 1),
     figure('Leech twist, °', 'leech_twist', 'deg', 1, 1),
     figure('Girth, mm', 'girth', 'm', 1, 1000),

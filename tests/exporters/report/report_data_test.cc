@@ -249,43 +249,38 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_FALSE(Parsed().contains("surfaces"));
   EXPECT_FALSE(Parsed().contains("rigs"));
   EXPECT_FALSE(Parsed().contains("design"));
-  ReportInput input = example_.Input();
-  ReportSection section;
-  section.name = "h1";
+  ReportExample example = example_;
+  SectionReport& report = example.sail.sections;
+  Section section = StraightSection("h1", {0, 0, 1.5}, {2, 0, 1.5});
   section.height_m = 1.5;
   section.chord_m = Estimate{2.0, 0.001};
-  section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
-  section.design_m = {{0, 0.01}, {2, 0.01}};
-  input.sections = {section};
-  input.section_notes = {"twist of sail refers to section h2"};
-  input.design = ReportDesign{"design.step", 30, 12.5};
-  ReportSurface surface;
-  surface.part = "hull";
-  surface.area_m2 = 0.5;
-  surface.volume_m3 = 0.25;
-  surface.x_in_shape_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  surface.triangles = {{{0, 1, 2}}};
-  input.surfaces = {surface};
-  RigNumbers rig;
-  rig.part = "sail";
-  rig.luff_bend_m = Estimate{0.03, 0.001};
-  input.rigs = {rig};
+  section.camber = Estimate{0.1, std::nullopt};
+  report.sections = {section, StraightSection("h2", {0, 0, 2.5}, {1, 0, 2.5})};
+  report.notes = {"twist of sail refers to section h2"};
+  report.rigs.resize(2);
+  report.rigs[1].part = "sail";
+  report.rigs[1].luff_bend_m = Estimate{0.03, 0.001};
+  example.sail.surface_notes = {"jib: too few lines"};
+  ReportInput input = example.Input();
+  input.design = ReportDesign{"design.step", 30, 12.5, {{{0, 0.01}, {2, 0.01}}, {}}};
   input.clip = ReportClip{25, 4.04};
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);
-  EXPECT_EQ(data.at("sections").at(0).at("profile").size(), 3u);
+  EXPECT_EQ(data.at("sections").at(0).at("name"), "h1");
+  EXPECT_EQ(data.at("sections").at(0).at("profile").back(), json::parse("[2.0, 0.0]"));
+  EXPECT_EQ(data.at("sections").at(0).at("profile_in_shape").back(),
+            json::parse("[2.0, 0.0, 1.5]"));
   EXPECT_EQ(data.at("sections").at(0).at("design").size(), 2u);
   EXPECT_EQ(data.at("design").at("distance_mm"), 12.5);
-  EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
+  EXPECT_FALSE(data.at("sections").at(1).contains("design"));
+  EXPECT_EQ(data.at("sections").at(0).at("camber_percent"), 10.0);
+  EXPECT_FALSE(data.at("sections").at(0).contains("camber_sigma_percent"));
   EXPECT_FALSE(data.at("sections").at(0).contains("twist_deg"));
   EXPECT_EQ(data.at("section_notes").at(0), "twist of sail refers to section h2");
-  EXPECT_EQ(data.at("surfaces").at(0).at("part"), "hull");
-  EXPECT_EQ(data.at("surfaces").at(0).at("volume_m3"), 0.25);
-  EXPECT_FALSE(data.at("surfaces").at(0).contains("sigma_mm"));
-  EXPECT_EQ(data.at("surfaces").at(0).at("vertices").size(), 9u);
-  EXPECT_EQ(data.at("surfaces").at(0).at("triangles").size(), 3u);
-  EXPECT_EQ(data.at("rigs"),
-            json::parse(R"([{"part": "sail", "luff_bend_m": 0.03, "luff_bend_sigma_m": 0.001}])"));
+  EXPECT_EQ(data.at("surface_notes"), json::parse(R"(["jib: too few lines"])"));
+  // A rig of which nothing is known is left out.
+  EXPECT_EQ(data.at("rigs"), json::parse(R"([{"part": "sail", "luff_bend_mm": 30.0,
+                                              "luff_bend_sigma_mm": 1.0}])"));
   EXPECT_EQ(data.at("origin").at(1), "25 frames/s");
   EXPECT_EQ(data.at("origin").at(2), "4.0 s");
 }

@@ -18,11 +18,23 @@ constexpr int kUnseenMarkerId = 8000;
 }  // namespace
 
 ReportInput ReportExample::Input() const {
-  ReportInput input{model, layout, shape, metrics, model_metrics, scale};
+  ReportInput input{model, layout, shape, metrics, model_metrics, scale, sail, freeform};
   input.title = "Example of a sail";
   input.version = "1.2.3";
   input.options = {{"image_path", "images"}, {"Registration.method", "global"}};
   return input;
+}
+
+Section StraightSection(const std::string& name, const Eigen::Vector3d& luff_in_frame_m,
+                        const Eigen::Vector3d& leech_in_frame_m) {
+  Section section;
+  section.part = "sail";
+  section.name = name;
+  section.curve.degree = 1;
+  section.curve.knots = Eigen::Array4d(0, 0, 1, 1);
+  section.curve.poles_in_shape_m.resize(3, 2);
+  section.curve.poles_in_shape_m << luff_in_frame_m, leech_in_frame_m;
+  return section;
 }
 
 ReportExample MakeReportExample(int num_rows, int num_images) {

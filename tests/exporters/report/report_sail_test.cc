@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/exporters/report/report_example.h"
+
 namespace velamap {
 namespace {
 
@@ -20,38 +22,25 @@ PartSurface Tank(std::size_t num_triangles) {
 }
 
 TEST(ReportSail, PartsWithoutLinesAreListedAndDrawn) {
-  FreeformShape freeform;
-  freeform.surfaces = {Tank(1), Tank(1000000)};
-  const std::vector<ReportSurface> surfaces = MakeReportSurfaces({}, freeform);
+  ReportExample example = MakeReportExample(1, 2);
+  example.freeform.surfaces = {Tank(1), Tank(1000000)};
+  example.freeform.notes = {"tank: closed"};
+  ReportJsonValue data;
+  AddSail(example.Input(), &data);
+  const ReportJsonValue& surfaces = data.at("surfaces");
   ASSERT_EQ(surfaces.size(), 2u);
-  for (const ReportSurface& surface : surfaces) {
-    EXPECT_EQ(surface.part, "tank");
-    EXPECT_FALSE(surface.is_sail);
-    EXPECT_EQ(surface.area_m2, 2.0);
-    EXPECT_EQ(surface.volume_m3, 0.3);
-    EXPECT_DOUBLE_EQ(surface.distance_mm, 0.4);
-    EXPECT_DOUBLE_EQ(surface.sigma_mm.value(), 0.6);
+  for (const ReportJsonValue& surface : surfaces) {
+    EXPECT_EQ(surface.at("part"), "tank");
+    EXPECT_EQ(surface.at("is_sail"), false);
+    EXPECT_EQ(surface.at("area_m2"), 2.0);
+    EXPECT_EQ(surface.at("volume_m3"), 0.3);
+    EXPECT_DOUBLE_EQ(surface.at("distance_mm"), 0.4);
+    EXPECT_DOUBLE_EQ(surface.at("sigma_mm"), 0.6);
   }
-  EXPECT_EQ(surfaces[0].triangles.size(), 1u);
-  EXPECT_EQ(surfaces[0].x_in_shape_m.size(), 3u);
-  EXPECT_TRUE(surfaces[1].triangles.empty());  // the file would grow beyond what can be sent around
-}
-
-TEST(ReportSail, RigsAboutWhichNothingIsKnownAreLeftOut) {
-  SectionReport sections;
-  sections.rigs.resize(3);
-  sections.rigs[1].part = "main";
-  sections.rigs[1].luff_bend_m = Estimate{0.03, 0.001};
-  sections.rigs[1].luff_sag_m = Estimate{0.01, std::nullopt};
-  sections.rigs[2].part = "jib";
-  sections.rigs[2].sheeting_angle_deg = Estimate{8.0, 0.1};
-  const std::vector<RigNumbers> rigs = MakeReportRigs(sections);
-  ASSERT_EQ(rigs.size(), 2u);
-  EXPECT_EQ(rigs[0].part, "main");
-  EXPECT_EQ(rigs[0].luff_bend_m->sigma, 0.001);
-  EXPECT_FALSE(rigs[0].luff_sag_m->sigma);
-  EXPECT_FALSE(rigs[0].sheeting_angle_deg);
-  EXPECT_EQ(rigs[1].sheeting_angle_deg->value, 8.0);
+  EXPECT_EQ(surfaces[0].at("vertices").size(), 9u);
+  EXPECT_EQ(surfaces[0].at("triangles").size(), 3u);
+  EXPECT_TRUE(surfaces[1].at("triangles").empty());  // the file would grow beyond what can be sent
+  EXPECT_EQ(data.at("surface_notes").size(), 1u);
 }
 
 }  // namespace

@@ -1,15 +1,21 @@
 #include "workflows/commands/report_design.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/report/report_sail.h"
 #include "exporters/sail/section.h"
 #include "importer/base/error.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/support/error_matchers.h"
+#include "workflows/run/report_input.h"
 
 namespace velamap {
 namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Lt;
 
 // The report of a boat, and what AddDesign() adds to it.
 struct DesignExample {
@@ -26,9 +32,7 @@ struct DesignExample {
   }
 
   ReportInput With(const TriangleMesh& design) const {
-    ReportInput input{shape.metric_model,  layout,     shape.shape, shape.metrics,
-                      shape.model_metrics, shape.scale};
-    input.sections = MakeReportSections(shape.sail.sections);
+    ReportInput input = MakeReportInput(shape, layout, {});
     AddDesign(options, MeshDistance(design), shape, layout, section_options, &input);
     return input;
   }
@@ -39,13 +43,18 @@ TriangleMesh Moved(const Rigid3& b_from_a, TriangleMesh mesh) {
   return mesh;
 }
 
-// Of the design from the measured profile, at the same place along the chord.
-double LargestDepthDifference_m(const ReportSection& section) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < section.profile_m.size(); ++i) {
-    largest = std::max(largest, std::abs(section.design_m[i].y() - section.profile_m[i].y()));
+// Of the design from the measured profile of each section, at the same place along the chord.
+std::vector<double> LargestDepthDifferences_m(const ReportInput& input) {
+  std::vector<double> differences;
+  for (const Section& section : input.sail.sections.sections) {
+    const auto& design_m = input.design->profiles_m[differences.size()];
+    const auto measured = SampleProfile(section, static_cast<int>(design_m.size()));
+    double& largest = differences.emplace_back(0.0);
+    for (std::size_t i = 0; i < design_m.size(); ++i) {
+      largest = std::max(largest, std::abs(design_m[i].y() - measured[i].depth_m));
+    }
   }
-  return largest;
+  return differences;
 }
 
 TEST(ReportDesign, OfTheSameShapeCoversItsSections) {
@@ -55,33 +64,25 @@ TEST(ReportDesign, OfTheSameShapeCoversItsSections) {
   EXPECT_EQ(input.design->name, "design.ply");
   EXPECT_EQ(input.design->num_markers, 30);  // of the sail: the hull is no part of its design
   EXPECT_LT(input.design->distance_mm, 1.0);
-  ASSERT_EQ(input.sections.size(), 5u);
-  for (const ReportSection& section : input.sections) {
-    ASSERT_EQ(section.design_m.size(), section.profile_m.size()) << section.name;
-    EXPECT_LT(LargestDepthDifference_m(section), 1e-3) << section.name;
-  }
+  ASSERT_EQ(input.design->profiles_m.size(), 5u);
+  for (const auto& profile_m : input.design->profiles_m) EXPECT_EQ(profile_m.size(), 101u);
+  EXPECT_THAT(LargestDepthDifferences_m(input), Each(Lt(1e-3)));
 }
 
 TEST(ReportDesign, ShowsWhereAMeasuredLineIsFuller) {
   MarkerShape fuller = BoatShape();
   fuller = Shifted({33, 34}, {0, 0.03, 0}, fuller);  // the middle of h3, to leeward
-  const ReportInput input = DesignExample(fuller).With(SailMesh());
-  for (const ReportSection& section : input.sections) {
-    const double difference_m = LargestDepthDifference_m(section);
-    if (section.name == "h3") {
-      EXPECT_NEAR(difference_m, 0.03, 0.01);
-    } else {
-      EXPECT_LT(difference_m, 0.01) << section.name;
-    }
-  }
+  const DesignExample example(fuller);
+  const ReportInput input = example.With(SailMesh());
+  EXPECT_THAT(LargestDepthDifferences_m(input),
+              ElementsAre(Lt(0.01), Lt(0.01), DoubleNear(0.03, 0.01), Lt(0.01), Lt(0.01)));
 }
 
 TEST(ReportDesign, InAnotherUnitIsLeftOut) {
   TriangleMesh design = SailMesh();
   for (Eigen::Vector3d& x : design.vertices_m) x *= 1e3;
-  const ReportInput input = DesignExample(BoatShape()).With(design);
-  EXPECT_FALSE(input.design);
-  for (const ReportSection& section : input.sections) EXPECT_TRUE(section.design_m.empty());
+  const DesignExample example(BoatShape());
+  EXPECT_FALSE(example.With(design).design);
 }
 
 TEST(ReportDesign, IsNoTable) {

@@ -24,21 +24,30 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
+// Of straight lines between this many points.
+Eigen::ArrayXd KnotsOfDegree1(int num_points) {
+  Eigen::ArrayXd knots(num_points + 2);
+  knots << 0, Eigen::ArrayXd::LinSpaced(num_points, 0, 1), 1;
+  return knots;
+}
+
 // Through the centres of the markers, which stand in rows of 13 by id.
-ReportSurface SurfaceThrough(const MarkerShape& shape) {
+SailSurface SurfaceThrough(const MarkerShape& shape) {
   constexpr int kNumColumns = 13;
-  ReportSurface surface;
-  surface.part = "sail";
-  surface.is_sail = true;
-  for (const ShapeMarker& marker : shape.markers) {
-    surface.x_in_shape_m.push_back(marker.x_in_shape_m[0].value());
+  const int num_rows = static_cast<int>(shape.markers.size()) / kNumColumns;
+  SailSurface result;
+  result.part = "sail";
+  SplineSurface& surface = result.fit.surface;
+  surface.degree_u = surface.degree_v = 1;
+  surface.knots_u = KnotsOfDegree1(kNumColumns);
+  surface.knots_v = KnotsOfDegree1(num_rows);
+  surface.poles_in_shape_m.resize(kNumColumns * num_rows, 3);
+  for (int i = 0; i < kNumColumns * num_rows; ++i) {
+    surface.poles_in_shape_m.row(i % kNumColumns * num_rows + i / kNumColumns) =
+        shape.markers[static_cast<std::size_t>(i)].x_in_shape_m[0]->transpose();
   }
-  for (int i = 0; i + kNumColumns + 1 < static_cast<int>(shape.markers.size()); ++i) {
-    if (i % kNumColumns == kNumColumns - 1) continue;
-    surface.triangles.push_back({i, i + 1, i + kNumColumns});
-    surface.triangles.push_back({i + 1, i + kNumColumns + 1, i + kNumColumns});
-  }
-  return surface;
+  result.area_m2 = SurfaceArea(surface);
+  return result;
 }
 
 // The largest example asked for: 130 markers, 100 cameras, with sigmas, sections and a surface.
@@ -52,30 +61,26 @@ class ReportBrowser : public BrowserTest {
       marker.sigma_m[0] = Eigen::Vector3d(2e-4, 3e-4, 6e-4);
     }
     DrawCentralImage(example.model, dir_->path());
+    Section section = StraightSection("line h3", *example.shape.markers[39].x_in_shape_m[0],
+                                      *example.shape.markers[51].x_in_shape_m[0]);
+    section.chord_m = {2.345, 0.0012};
+    section.camber = {0.0925, 0.00003};
+    section.draft_position = Estimate{0.412, 0.0012};
+    section.entry_angle_deg = {20.5, 0.14};
+    section.exit_angle_deg = {-17.5, 0.14};
+    section.twist_deg = Estimate{10.3, 0.011};
+    section.leech_twist_deg = Estimate{-10.1, 0.12};
+    section.girth_m = {2.4021, 0.0013};
+    section.num_missing_at_luff = 3;
+    section.num_missing_at_leech = 2;
+    example.sail.sections.sections = {section};
+    example.sail.sections.notes = {"twist of sail refers to section h4"};
+    example.sail.surfaces = {SurfaceThrough(example.shape)};
     ReportInput input = example.Input();
     input.image_path = dir_->path().string();
     input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"},
                              {"frame_000201.jpg", "not chosen: frames next to it are sharper"}};
-    ReportSection section;
-    section.name = "line h3";
-    section.chord_m = Estimate{2.345, 0.0012};
-    section.camber_percent = Estimate{9.25, 0.003};
-    section.draft_percent = Estimate{41.2, 0.12};
-    section.entry_deg = Estimate{20.5, 0.14};
-    section.exit_deg = Estimate{-17.5, 0.14};
-    section.twist_deg = Estimate{10.3, 0.011};
-    section.leech_twist_deg = Estimate{-10.1, 0.12};
-    section.girth_m = Estimate{2.4021, 0.0013};
-    section.note = "3 markers missing at the luff and 2 at the leech";
-    section.profile_m = {{0, 0}, {1, 0.2}, {2.345, 0}};
-    for (int i = 0; i < 13; ++i) {
-      section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
-    }
-    section.design_m = {{0, 0}, {1, 0.15}, {2.345, 0}};
-    input.sections = {section};
-    input.section_notes = {"twist of sail refers to section h4"};
-    input.design = ReportDesign{"design.step", 130, 31.25};
-    input.surfaces = {SurfaceThrough(example.shape)};
+    input.design = ReportDesign{"design.step", 130, 31.25, {{{0, 0}, {1, 0.15}, {2.345, 0}}}};
     std::ofstream out(*dir_ / "report.html", std::ios::binary);
     WriteReport(input, out);
     WriteTextFile(*dir_ / "phone.html",
@@ -129,6 +134,8 @@ TEST_F(ReportBrowser, NamesRunNoScript) {
   for (LayoutPart& part : example.layout.parts) part.name = name;
   for (ShapeMarker& marker : example.shape.markers) marker.part = name;
   for (ModelImage& image : example.model.images) image.name = name + image.name;
+  example.sail.sections.sections = {StraightSection(name, {0, 0, 0}, {2, 0, 0})};
+  example.sail.sections.notes = {name};
   ReportInput input = example.Input();
   input.title = name;
   input.images_left_out = {{name, name}};
@@ -136,12 +143,7 @@ TEST_F(ReportBrowser, NamesRunNoScript) {
   input.warnings = {name};
   input.options = {{name, name}};
   input.versions = {{name, name}};
-  ReportSection section;
-  section.name = name;
-  section.profile_m = section.design_m = {{0, 0}, {1, 0.2}, {2, 0}};
-  input.sections = {section};
-  input.section_notes = {name};
-  input.design = ReportDesign{name, 30, 1.5};
+  input.design = ReportDesign{name, 30, 1.5, {{{0, 0}, {1, 0.2}, {2, 0}}}};
   std::ostringstream page;
   WriteReport(input, page);
   WriteTextFile(*dir_ / "names.html", page.str());
@@ -183,9 +185,9 @@ std::string PageWithHull(double drop) {
     marker.part = "hull";
     for (auto& x : marker.x_in_shape_m) x->z() -= drop * (heights_m.back() - heights_m.front());
   }
+  example.sail.surfaces = {SurfaceThrough(sail)};
   ReportInput input = example.Input();
   input.frame = ReportFrame{"upright", Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY()};
-  input.surfaces = {SurfaceThrough(sail)};
   std::ostringstream page;
   WriteReport(input, page);
   return page.str();
