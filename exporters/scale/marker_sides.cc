@@ -37,12 +37,11 @@ PointEquations EquationsOf(const Model& model, const std::map<ImageId, const Mod
     const Camera& camera = model.cameras.at(image.camera_id);
     const Eigen::Vector3d x_in_cam = image.cam_from_world * point.x_in_world;
     if (!(x_in_cam.z() > 0)) continue;
-    const RayFunction x_in_image_px =
-        ImageFromRayWithJacobian(camera.model, camera.params.data(), x_in_cam.hnormalized());
-    const Eigen::Matrix<double, 2, 3> by_world = x_in_image_px.by_ray * RayByPoint(x_in_cam) *
-                                                 image.cam_from_world.rotation.toRotationMatrix();
+    const ImagePoint seen = ImageFromPointWithJacobian(camera, x_in_cam);
+    const Eigen::Matrix<double, 2, 3> by_world =
+        seen.by_point * image.cam_from_world.rotation.toRotationMatrix();
     equations.Add<2>(by_world,
-                     x_in_image_px.value - image.points2D.at(element.point2D_idx).x_in_image_px);
+                     seen.value_px - image.points2D.at(element.point2D_idx).x_in_image_px);
     ++equations.num_observations;
   }
   return equations;

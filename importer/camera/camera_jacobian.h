@@ -1,12 +1,14 @@
 // Derivatives of the camera models of camera_projection.h with respect to the ray, by automatic
-// differentiation.
+// differentiation, and to a point in the camera frame.
 
 #pragma once
 
 #include <ceres/jet.h>
 #include <Eigen/Core>
 
+#include "importer/camera/camera.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/geometry/pose_step.h"
 
 namespace velamap {
 
@@ -42,6 +44,19 @@ inline RayFunction ImageFromRayWithJacobian(CameraModel model, const double* par
         return ImageFromRay<ceres::Jet<double, 2>, double>(model, params, jets);
       },
       ray);
+}
+
+// The image position of a point in front of the camera, px, and its derivative by the point.
+struct ImagePoint {
+  Eigen::Vector2d value_px;
+  Eigen::Matrix<double, 2, 3> by_point;
+};
+
+inline ImagePoint ImageFromPointWithJacobian(const Camera& camera,
+                                             const Eigen::Vector3d& x_in_cam) {
+  const RayFunction image = ImageFromRayWithJacobian(camera.model, camera.params.data(),
+                                                     Eigen::Vector2d(x_in_cam.hnormalized()));
+  return {image.value, image.by_ray * RayByPoint(x_in_cam)};
 }
 
 }  // namespace velamap

@@ -35,11 +35,8 @@ struct RayPoseProblem : LeastSquaresProblem<6> {
       const Eigen::Vector3d rotated = rotation * observation.x_in_world;
       const Eigen::Vector3d x_in_cam = rotated + cam_from_world.translation;
       if (!(x_in_cam.z() > 0)) return equations->Reject();
-      const Eigen::Matrix<double, 2, 3> by_point = RayByPoint(x_in_cam);
-      Eigen::Matrix<double, 2, 6> by_step;
-      by_step << ByRotation(by_point, rotated), by_point;
       const Eigen::Vector2d residual = x_in_cam.hnormalized() - observation.ray;
-      equations->Add(by_step, residual, loss);
+      equations->Add(ByPoseStep(RayByPoint(x_in_cam), rotated), residual, loss);
     }
   }
 

@@ -39,6 +39,14 @@ inline Eigen::Matrix<double, 2, 3> ByRotation(const Eigen::Matrix<double, 2, 3>&
   return by_rotation;
 }
 
+// The same with respect to a step of the pose that moves x to R x + t.
+inline Eigen::Matrix<double, 2, 6> ByPoseStep(const Eigen::Matrix<double, 2, 3>& by_point,
+                                              const Eigen::Vector3d& rotated) {
+  Eigen::Matrix<double, 2, 6> by_pose;
+  by_pose << ByRotation(by_point, rotated), by_point;
+  return by_pose;
+}
+
 // Derivative (3 x 4) of the rotated point R p with respect to the unit quaternion (x y z w) of R,
 // from R p = p + 2 w cross(v, p) + 2 cross(v, cross(v, p)), where v = (x y z).
 inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,

@@ -43,13 +43,9 @@ class ImagePoseProblem : public LeastSquaresProblem<6> {
       const Eigen::Vector3d rotated = cam_from_world.rotation * point.x_in_world;
       const Eigen::Vector3d x_in_cam = rotated + cam_from_world.translation;
       if (!(x_in_cam.z() > 0)) return equations->Reject();
-      const RayFunction image = ImageFromRayWithJacobian(camera_.model, camera_.params.data(),
-                                                         Eigen::Vector2d(x_in_cam.hnormalized()));
-      const Eigen::Matrix<double, 2, 3> by_point = image.by_ray * RayByPoint(x_in_cam);
-      Eigen::Matrix<double, 2, 6> by_step;
-      by_step << ByRotation(by_point, rotated), by_point;
-      const Eigen::Vector2d residual_px = image.value - point.x_in_image_px;
-      equations->Add(by_step, residual_px);
+      const ImagePoint image = ImageFromPointWithJacobian(camera_, x_in_cam);
+      const Eigen::Vector2d residual_px = image.value_px - point.x_in_image_px;
+      equations->Add(ByPoseStep(image.by_point, rotated), residual_px);
     }
   }
 

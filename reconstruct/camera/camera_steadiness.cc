@@ -44,15 +44,12 @@ class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
       const Eigen::Vector3d rotated = own.cam_from_world.rotation * point.x_in_world;
       const Eigen::Vector3d x = rotated + own.cam_from_world.translation;
       if (!(x.z() > 0)) return equations->Reject();
-      const RayFunction image = ImageFromRayWithJacobian(camera_.model, camera_.params.data(),
-                                                         Eigen::Vector2d(x.hnormalized()));
-      const Eigen::Vector2d from_center = factor * (image.value - center_);
+      const ImagePoint image = ImageFromPointWithJacobian(camera_, x);
+      const Eigen::Vector2d from_center = factor * (image.value_px - center_);
       const Eigen::Vector2d residual =
           center_ + own.change.tail<2>() + from_center - point.x_in_image_px;
-      const Eigen::Matrix<double, 2, 3> by_point = factor * image.by_ray * RayByPoint(x);
       Eigen::Matrix<double, 2, kNumUnknowns> jacobian;
-      jacobian.leftCols<3>() = ByRotation(by_point, rotated);
-      jacobian.middleCols<3>(3) = by_point;
+      jacobian.leftCols<6>() = factor * ByPoseStep(image.by_point, rotated);
       jacobian.col(6) = from_center;
       jacobian.rightCols<2>().setIdentity();
       equations->Add(jacobian, residual, loss_);

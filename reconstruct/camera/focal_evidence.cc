@@ -59,11 +59,8 @@ Eigen::Matrix<double, 2 * kNumCorners, 6> ByPose(const Camera& camera, const Rig
   Eigen::Matrix<double, 2 * kNumCorners, 6> jacobian;
   for (int i = 0; i < kNumCorners; ++i) {
     const Eigen::Vector3d rotated = pose.rotation * corners[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d x = rotated + pose.translation;
-    const RayFunction image = ImageFromRayWithJacobian(camera.model, camera.params.data(),
-                                                       Eigen::Vector2d(x.hnormalized()));
-    const Eigen::Matrix<double, 2, 3> by_point = image.by_ray * RayByPoint(x);
-    jacobian.middleRows<2>(2 * i) << ByRotation(by_point, rotated), by_point;
+    const ImagePoint image = ImageFromPointWithJacobian(camera, rotated + pose.translation);
+    jacobian.middleRows<2>(2 * i) = ByPoseStep(image.by_point, rotated);
   }
   return jacobian;
 }

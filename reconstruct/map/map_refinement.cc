@@ -58,9 +58,7 @@ void FramePoseProblem::Evaluate(const Rigid3& cam_from_shape, bool, Equations* e
         *placed.observation,
         [&](std::size_t i) { return Eigen::Vector3d(rotated[i] + cam_from_shape.translation); },
         [&](std::size_t i, const Eigen::Matrix<double, 2, 3>& by_x) {
-          Eigen::Matrix<double, 2, 6> by_step;
-          by_step << ByRotation(by_x, rotated[i]), by_x;
-          return by_step;
+          return ByPoseStep(by_x, rotated[i]);
         },
         equations);
   }
@@ -88,8 +86,7 @@ void MarkerPlaceProblem::Evaluate(const Sim3& place, bool, Equations* equations)
         [&](std::size_t i, const Eigen::Matrix<double, 2, 3>& by_x) {
           const Eigen::Matrix<double, 2, 3> by_x_in_shape = by_x * cam_rotation;
           Eigen::Matrix<double, 2, 7> by_step;
-          by_step << ByRotation(by_x_in_shape, rotated[i]), by_x_in_shape,
-              by_x_in_shape * rotated[i];
+          by_step << ByPoseStep(by_x_in_shape, rotated[i]), by_x_in_shape * rotated[i];
           return by_step;
         },
         equations);

@@ -20,9 +20,8 @@ Command FindCommand(const std::string& name) {
     if (name == command.syntax.name) return std::move(command);
     names.push_back(command.syntax.name);
   }
-  const std::string nearest = NearestName(name, names);
   throw InputError(fmt::format("{}: unknown command; {}see velamap help (or velamap --help)", name,
-                               nearest.empty() ? "" : "did you mean " + nearest + "? "));
+                               DidYouMean(name, names)));
 }
 
 void PrintOverview() {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
-#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
@@ -58,12 +57,6 @@ void AddGiven(const Option& option, const std::string& name, const GivenValue& g
 
 std::string HelpHint(const CommandSyntax& syntax) {
   return fmt::format("see velamap {} --help_all", syntax.name);
-}
-
-std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
-                       const std::string& dashes) {
-  const std::string nearest = NearestName(unknown_name, names);
-  return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
 }
 
 }  // namespace velamap

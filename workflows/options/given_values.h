@@ -31,8 +31,4 @@ void AddGiven(const Option& option, const std::string& name, const GivenValue& g
 
 std::string HelpHint(const CommandSyntax& syntax);
 
-// `dashes` stand before the names of options where the unknown one stands.
-std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
-                       const std::string& dashes = "");
-
 }  // namespace velamap

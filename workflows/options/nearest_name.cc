@@ -5,6 +5,8 @@
 #include <optional>
 #include <sstream>
 
+#include <fmt/format.h>
+
 namespace velamap {
 namespace {
 
@@ -82,6 +84,12 @@ std::string NearestName(const std::string& text, const std::vector<std::string>&
     }
   }
   return nearest;
+}
+
+std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
+                       const std::string& dashes) {
+  const std::string nearest = NearestName(unknown_name, names);
+  return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
 }
 
 }  // namespace velamap

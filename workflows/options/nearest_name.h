@@ -11,4 +11,8 @@ namespace velamap {
 // A whole word too many or missing, such as the section before the dot, counts as two at most.
 std::string NearestName(const std::string& text, const std::vector<std::string>& names);
 
+// "did you mean NAME? " with `dashes` before the nearest name; "" if none is near.
+std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
+                       const std::string& dashes = "");
+
 }  // namespace velamap

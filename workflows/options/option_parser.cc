@@ -11,6 +11,7 @@
 #include "importer/base/numbers.h"
 #include "workflows/options/given_values.h"
 #include "workflows/options/help_text.h"
+#include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/project_file.h"
 

@@ -6,6 +6,7 @@
 
 #include "importer/base/error.h"
 #include "importer/text/text_file.h"
+#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
