@@ -60,8 +60,8 @@ struct ImportReport {
   int num_images_without_markers = 0;
   int num_markers = 0;   // detections accepted in this run
   int num_rejected = 0;  // detections rejected in this run
-  // Of num_rejected, as counted when the frames were processed: those that no part of the layout
-  // names, and those with the reason kDoubtfulRotation, which later frames may resolve.
+  // Parts of num_rejected: detections that no part of the layout names, and those with the reason
+  // kDoubtfulRotation. Both are counted frame by frame; later frames may resolve the latter.
   int num_not_in_layout = 0, num_doubtful_rotations = 0;
   int num_fallbacks = 0;  // accepted without a corner fit: corners of cv::cornerSubPix
   int num_pairs = 0;      // image pairs with matches

@@ -29,7 +29,8 @@ namespace velamap {
 
 // Returns the cameras by id; images that are stored rotated have a rotated camera of their own.
 // `guesses` are the cameras of the database and are returned unchanged for fewer than two images.
-// Registers with the global method whatever `registration` says, and at most 40 frames of a video.
+// Always registers with the global method, even if `registration` names another one, and at most 40
+// frames of a video.
 // Throws DataError if no initial guess leads to a model.
 std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const std::map<CameraId, Camera>& guesses,

@@ -155,7 +155,7 @@ std::optional<double> AlignedNoise::VarianceAt(const Eigen::Vector3d& x_in_refer
   const auto covariance_m2 =
       CovarianceOfPlaces({own}, sensitivity_.MotionGradient(x_in_reference_m, direction));
   if (!covariance_m2) return std::nullopt;
-  return std::max(0.0, (*covariance_m2)(0, 0));  // rounding errors are cut off
+  return std::max(0.0, (*covariance_m2)(0, 0));  // rounding can make it negative
 }
 
 std::optional<Eigen::Matrix3d> AlignedNoise::CenterCovariance(

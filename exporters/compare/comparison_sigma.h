@@ -66,19 +66,19 @@ class AlignmentSensitivity {
   int num_free_directions_ = 0;
 };
 
-// What the noise of one shape does to places on it after the alignment, which that noise moves too.
-// The motion depends on all corners, and is multiplied with their covariance only once: each place
-// then takes the time of its own corners.
+// Propagates the noise of one shape to places on it after the alignment, which the same noise
+// changes. All corners enter the motion of the alignment, so the product of its derivatives with
+// their covariance is computed once; a place then takes only the time of its own corners.
 class AlignedNoise {
  public:
-  // `covariance` is that of the corners of one shape (`whose`), in its own frame. It and the
-  // alignment must outlive this.
+  // `covariance` belongs to the corners of one shape (`whose`) and is in the frame of that shape.
+  // It and the alignment must outlive this object.
   AlignedNoise(const AlignmentSensitivity& sensitivity, ComparedShape whose,
                const PointCovariance& covariance);
 
   // Variance, m^2, of a place along a direction, both in the frame of the reference. `own` is the
-  // gradient of the place along the direction without what its corners do to the alignment. Nothing
-  // if the covariance lacks one of the corners.
+  // derivative of the place along the direction by its corners while the alignment is held fixed.
+  // Nothing if the covariance lacks one of the corners.
   std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
                                    const Eigen::Vector3d& direction,
                                    const CornerGradient& own) const;
@@ -88,7 +88,8 @@ class AlignedNoise {
   std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker) const;
 
  private:
-  // Of functions of the shape, each with the gradient of its own corners and that of the motion.
+  // Joint covariance of several places. Column i of `by_motion` is the derivative of place i by the
+  // motion of the alignment.
   std::optional<Eigen::MatrixXd> CovarianceOfPlaces(const std::vector<CornerGradient>& own,
                                                     const Eigen::MatrixXd& by_motion) const;
 

@@ -86,7 +86,7 @@ std::optional<ComparisonDoubt> DoubtOf(const ShapeLikeness& likeness) {
 std::optional<ComparisonDoubt> DoubtOfSurfaceFit(const MarkerShape& shape, double distance_m,
                                                  int num_over_surface, int num_markers) {
   constexpr double kMinShareOver = 0.25;
-  std::vector<Eigen::Vector3d> corners_m;  // a single marker has a size as well
+  std::vector<Eigen::Vector3d> corners_m;  // centres would give a single marker no size
   for (const ShapeMarker& marker : shape.markers) {
     if (!marker.IsWhole()) continue;
     for (int i = 1; i <= kNumCorners; ++i) corners_m.push_back(*marker.x_in_shape_m[i]);

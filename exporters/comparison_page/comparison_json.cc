@@ -25,7 +25,7 @@ bool IsDesign(const ComparisonPageInput& input) { return input.reference == null
 Json FrameJson(const ComparisonPageInput& input, const Eigen::Vector3d& normal) {
   const Comparison& first = input.series.front();
   const SectionComparison& sections = first.sections;
-  // As in the report: the sail's own direction up is only that of a frame that has none.
+  // Up is that of the frame, as in the report, not that of the sail; z if the frame has none.
   const Eigen::Vector3d up = sections.up_in_reference.value_or(Eigen::Vector3d::UnitZ());
   Eigen::Vector3d forward = -(normal - normal.dot(up) * up);
   constexpr double kMinHorizontal = 0.1;

@@ -10,7 +10,7 @@
 
 namespace velamap {
 
-// A coarser step is worth a word.
+// The program warns of a coarser step.
 inline constexpr double kMaxFloatStep_m = 1e-5;
 
 // Distance between neighbouring floats at the coordinate that is farthest from the origin, m, where

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kMinLuffMarkers = 4;  // of a smoothing spline
+constexpr std::size_t kMinLuffMarkers = 4;  // a smoothing spline needs as many points
 
 enum LuffNumber { kBend, kSag, kNumLuffNumbers };
 

@@ -15,13 +15,13 @@ class DisjointSets {
     std::iota(parents_.begin(), parents_.end(), 0);
   }
 
-  // The index that stands for the set of `i`. Shortens the way to it.
+  // The representative of the set of `i`. Shortens the paths that lead to it.
   std::size_t Find(std::size_t i) {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
     return i;
   }
 
-  // The one that stands for the set of `a` stands for both sets.
+  // Unites two sets; the representative of the set of `a` becomes that of both.
   void Join(std::size_t a, std::size_t b) { parents_[Find(b)] = Find(a); }
 
  private:

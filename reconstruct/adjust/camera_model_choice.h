@@ -23,8 +23,8 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 // and refined. Nothing if the refinement fails.
 std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution solution);
 
-// Whether the model is worth a trial. A fisheye is only if a camera sees more than 35 degrees off
-// its axis; with less, its many parameters would describe nothing.
+// Whether WithBestCameraModel() tries this model. It tries a fisheye only if a camera sees more
+// than 35 degrees off its axis, because nearer to the axis its many parameters fit noise.
 bool IsCandidate(CameraModel model, const MarkerSolution& solution);
 
 // Whether the distortion of any camera folds over inside the picture.

@@ -21,8 +21,8 @@ namespace velamap {
 struct PlacedMarker {
   int marker_id = 0;
   Eigen::Vector3d center_in_shape_m = Eigen::Vector3d::Zero();
-  // Of the centre in its least certain direction, as if an image showed one corner of it: the
-  // errors of the frame's pose, the lens and the cloth move all four corners together.
+  // Sigma of the centre in its least certain direction. Each image counts as if it showed only one
+  // corner, because errors of the pose, the lens and the cloth move all four corners together.
   double sigma_m = 0.0;
   int num_seen = 0;  // images in which it is detected at this place
   // Images that should show it, because it projects into them, faces the camera and is as large as

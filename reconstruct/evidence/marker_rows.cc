@@ -55,7 +55,8 @@ class RowFinder {
   }
 
  private:
-  // Whether most neighbours on rows agree on what is right and therefore on what is up.
+  // Whether the markers tell which way is up: most neighbours on a row agree on the direction to
+  // the right.
   bool KnowsUp() const {
     constexpr double kAgree = 0.7, kShare = 0.9;
     int num = 0, num_agreeing = 0;

@@ -24,7 +24,7 @@ constexpr double kMaxElongation = 10.0;
 
 constexpr double kMaxWeakParallax = 20.0 * kRadPerDeg;
 
-// In every warning.
+// Joins the cause to the consequence in every warning.
 constexpr char kTherefore[] = "; therefore the points are known to ";
 
 // Medians over the 1-sigma ellipsoids of the points.

@@ -48,9 +48,10 @@ struct Sighting {
   Eigen::Vector2d place_px;
 };
 
-// In the frames of the window that show the marker: the nearest before and after, at most one more
-// on one side than on the other, because a polynomial through frames on one side is several times
-// as noisy. At the end of a marker's visibility, in the frame itself and the next two.
+// The sightings that give a marker's motion: in the nearest frames of the window that show it,
+// before and after. One side has at most one more than the other, because a polynomial through
+// frames of one side is several times as noisy. At the end of a marker's visibility, these are the
+// frame itself and the next two.
 std::vector<Sighting> SightingsOf(const FrameWindow& window, int marker_id) {
   std::vector<Sighting> all;
   std::ptrdiff_t num_before = 0;

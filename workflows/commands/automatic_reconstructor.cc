@@ -178,8 +178,8 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
 
 constexpr char kFoundBy[] = "found by velamap";
 
-// With a calibration, a camera that an earlier run has found is not that of this result. A file
-// that the user has put there stays.
+// Removes the camera that an earlier run has found: this run used a calibration, so its result does
+// not have that camera. A file that the user has put there stays.
 void RemoveFoundCamera(const std::string& camera_path, const WorkspacePaths& paths) {
   const std::filesystem::path file = paths.Camera();
   if (CanonicalPath(camera_path) == CanonicalPath(file) || !IsOwnFile(file)) return;

@@ -13,11 +13,11 @@ constexpr double kGoodShare = 0.8, kBadShare = 0.5;
 
 std::string PercentText(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
-// In how many views of a path the markers are in the picture, and in how many outside it.
+// The number of views of a path that show a marker, and of those that look past it.
 struct Sightings {
   std::map<int, int> num_inside, num_outside;  // by marker
 
-  // Of all markers in all views.
+  // The share of all markers in all views that lie outside the picture.
   double OutsideShare(const PlannedSurface& surface, const PlannedPath& path) const {
     int num = 0;
     for (const auto& [marker_id, num_views] : num_outside) num += num_views;
