@@ -266,6 +266,8 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
   const bool shows_between = !sorted.markers.empty() || (!interpolates && HasTilts(sorted));
   SurfaceParameters parameters = AssignParameters(sorted.lines, shows_between, ends);
+  // One that interpolates has the edge where the lines end; points between them would bend it.
+  if (!interpolates) AddEdgePoints(ends.edges, &parameters);
   SetCorners(sorted.by_id, &parameters);
   SurfaceFit fit = IterateFits(sorted, noise, &parameters);
   // An interpolating surface has its ends at u and v of 0 and 1, because its markers stay there.

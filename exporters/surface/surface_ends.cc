@@ -36,48 +36,76 @@ Eigen::Vector3d MiddleOf(const SurfaceLine& line) {
 
 constexpr const char* kEdgeNames[] = {"luff", "leech", "foot", "head"};
 
+// What options, input and lines have of one edge.
+struct EdgeMembers {
+  const char* name;
+  std::vector<Eigen::Vector3d> SurfaceEdges::*points;
+  double SurfaceEdges::*beyond_m;
+  std::optional<double> SurfaceOptions::*extension_mm;
+  std::string SurfaceInput::*note;
+};
+
+// Takes the points of the layout, where the options do not say where the edge is. Returns whether
+// the layout decides.
+bool TakePoints(const EdgeMembers& edge, const SurfaceInput& input, const SurfaceOptions& options,
+                double size_m, SortedInput* sorted, SurfaceOptions* ends) {
+  if (!(options.edges.*edge.points).empty() || options.*edge.extension_mm) return false;
+  if (!(input.*edge.note).empty()) sorted->notes.push_back(input.*edge.note);
+  ends->edges.*edge.points = input.edges.*edge.points;
+  if (IsWithinReach(input.edges.*edge.beyond_m, size_m, edge.name, sorted)) {
+    ends->edges.*edge.beyond_m = input.edges.*edge.beyond_m;
+  }
+  return true;
+}
+
+void EndSide(const EdgeMembers& edge, std::optional<double> SurfaceLine::*offset_m,
+             const SurfaceInput& input, const SurfaceOptions& options, SortedInput* sorted,
+             SurfaceOptions* ends) {
+  bool is_within = TakePoints(edge, input, options, MeanLength(sorted->lines), sorted, ends);
+  for (const SurfaceLine& line : sorted->lines) {
+    const double reach_m = (line.*offset_m).value_or(0.0);
+    is_within = is_within && IsWithinReach(reach_m, LengthOf(line), edge.name, sorted);
+  }
+  for (SurfaceLine& line : sorted->lines) {
+    if (!is_within) (line.*offset_m).reset();
+  }
+}
+
+// `has_line`: the line from which `offset_m` counts is one of the surface.
+void EndHeight(const EdgeMembers& edge, const std::optional<double>& offset_m, bool has_line,
+               const SurfaceInput& input, const SurfaceOptions& options, SortedInput* sorted,
+               SurfaceOptions* ends) {
+  const double span_m = (MiddleOf(sorted->lines.back()) - MiddleOf(sorted->lines.front())).norm();
+  if (!TakePoints(edge, input, options, span_m, sorted, ends) || !offset_m) return;
+  if (!has_line) {
+    sorted->notes.push_back(
+        fmt::format("{}: the edge of the cloth is given from a line that is left out; the surface "
+                    "ends at the next one",
+                    edge.name));
+  } else if (IsWithinReach(*offset_m, span_m, edge.name, sorted)) {
+    ends->*edge.extension_mm = kMmPerM * *offset_m;
+  }
+}
+
 }  // namespace
 
 SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& options,
                            SortedInput* sorted) {
   SurfaceOptions ends = options;
-  const auto end_side = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
-                            std::optional<double> SurfaceOptions::*extension_mm,
-                            std::optional<double> SurfaceLine::*offset_m, const std::string& note) {
-    const bool is_given = !(options.edges.*edge).empty() || options.*extension_mm;
-    if (!is_given) ends.edges.*edge = input.edges.*edge;
-    if (!is_given && !note.empty()) sorted->notes.push_back(note);
-    bool is_within = !is_given;
-    for (const SurfaceLine& line : sorted->lines) {
-      const double reach_m = (line.*offset_m).value_or(0.0);
-      is_within = is_within && IsWithinReach(reach_m, LengthOf(line), name, sorted);
-    }
-    for (SurfaceLine& line : sorted->lines) {
-      if (!is_within) (line.*offset_m).reset();
-    }
-  };
-  end_side("luff", &SurfaceEdges::luff, &SurfaceOptions::luff_extension_mm,
-           &SurfaceLine::luff_offset_m, input.luff_note);
-  end_side("leech", &SurfaceEdges::leech, &SurfaceOptions::leech_extension_mm,
-           &SurfaceLine::leech_offset_m, input.leech_note);
-  const double span_m = (MiddleOf(sorted->lines.back()) - MiddleOf(sorted->lines.front())).norm();
-  const auto end_height = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
-                              std::optional<double> SurfaceOptions::*extension_mm,
-                              const std::optional<double>& offset_m, bool has_line) {
-    if (!(options.edges.*edge).empty() || options.*extension_mm || !offset_m) return;
-    if (!has_line) {
-      sorted->notes.push_back(
-          fmt::format("{}: the edge of the cloth is given from a line that is left out; the "
-                      "surface ends at the next one",
-                      name));
-    } else if (IsWithinReach(*offset_m, span_m, name, sorted)) {
-      ends.*extension_mm = kMmPerM * *offset_m;
-    }
-  };
-  end_height("foot", &SurfaceEdges::foot, &SurfaceOptions::foot_extension_mm, input.foot_offset_m,
-             input.lines.front().name == sorted->lines.front().name);
-  end_height("head", &SurfaceEdges::head, &SurfaceOptions::head_extension_mm, input.head_offset_m,
-             input.lines.back().name == sorted->lines.back().name);
+  EndSide({"luff", &SurfaceEdges::luff, &SurfaceEdges::beyond_luff_m,
+           &SurfaceOptions::luff_extension_mm, &SurfaceInput::luff_note},
+          &SurfaceLine::luff_offset_m, input, options, sorted, &ends);
+  EndSide({"leech", &SurfaceEdges::leech, &SurfaceEdges::beyond_leech_m,
+           &SurfaceOptions::leech_extension_mm, &SurfaceInput::leech_note},
+          &SurfaceLine::leech_offset_m, input, options, sorted, &ends);
+  EndHeight({"foot", &SurfaceEdges::foot, &SurfaceEdges::beyond_foot_m,
+             &SurfaceOptions::foot_extension_mm, &SurfaceInput::foot_note},
+            input.foot_offset_m, input.lines.front().name == sorted->lines.front().name, input,
+            options, sorted, &ends);
+  EndHeight({"head", &SurfaceEdges::head, &SurfaceEdges::beyond_head_m,
+             &SurfaceOptions::head_extension_mm, &SurfaceInput::head_note},
+            input.head_offset_m, input.lines.back().name == sorted->lines.back().name, input,
+            options, sorted, &ends);
   return ends;
 }
 
@@ -103,11 +131,14 @@ void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
     return std::any_of(sorted.lines.begin(), sorted.lines.end(),
                        [&](const SurfaceLine& line) { return (line.*offset_m).value_or(0.0) > 0; });
   };
+  const SurfaceEdges& given = ends.edges;
   const std::map<std::string, bool> continued = {
-      {"luff", goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},
-      {"leech", goes_on(ends.leech_extension_mm, &SurfaceLine::leech_offset_m)},
-      {"foot", goes_on(ends.foot_extension_mm, nullptr)},
-      {"head", goes_on(ends.head_extension_mm, nullptr)}};
+      {"luff",
+       given.beyond_luff_m > 0 || goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},
+      {"leech",
+       given.beyond_leech_m > 0 || goes_on(ends.leech_extension_mm, &SurfaceLine::leech_offset_m)},
+      {"foot", given.beyond_foot_m > 0 || goes_on(ends.foot_extension_mm, nullptr)},
+      {"head", given.beyond_head_m > 0 || goes_on(ends.head_extension_mm, nullptr)}};
   for (const char* name : kEdgeNames) {
     std::vector<double> sigmas_m;
     for (const SurfaceEdgePoint& point : edges) {

@@ -96,57 +96,63 @@ Eigen::Vector2d AcrossRow(const SplineSurface& surface, const Eigen::Vector2d& u
   return {square_m2 > 0 ? -jet.x_u.dot(jet.x_v) / square_m2 : 0.0, 1.0};
 }
 
-// v at a u of a row, linear between its points.
-double HeightAt(const SurfaceParameters& parameters, const ObservedRow& row, double u) {
-  const auto begin = parameters.observations.begin();
-  const auto first = begin + static_cast<std::ptrdiff_t>(row.first_idx) + 1;
-  const auto last = begin + static_cast<std::ptrdiff_t>(row.last_idx);
-  const auto above = std::find_if(first, last, [u](const auto& point) { return point.u > u; });
-  const auto below = above - 1;
-  if (above->u <= below->u) return below->v;
-  return below->v + (u - below->u) / (above->u - below->u) * (above->v - below->v);
-}
-
-// The places of the outline beside an outer row and its ends, `length_m` from them on average. The
-// neighbouring row, on the other side, tells where it is more and where less.
+// The places of the outline beside an outer row and its ends, `length_m` from them upwards, or
+// downwards where it is negative.
 std::vector<Eigen::Vector2d> BesideRow(const SplineSurface& surface,
                                        const SurfaceParameters& parameters, const ObservedRow& row,
-                                       const ObservedRow& neighbor, const Eigen::Vector2d& luff_uv,
+                                       const Eigen::Vector2d& luff_uv,
                                        const Eigen::Vector2d& leech_uv, double length_m) {
   std::vector<Eigen::Vector2d> places = {luff_uv};
   for (std::size_t k = row.first_idx; k <= row.last_idx; ++k) {
     places.push_back(FootOfCenter(surface, parameters.observations[k]));
   }
   places.push_back(leech_uv);
-  if (length_m <= 0) return places;
-  std::vector<Eigen::Vector2d> moves;  // as far as the neighbour
-  double sum = 0.0;                    // of how much farther than `length_m` that is
-  for (const Eigen::Vector2d& uv : places) {
-    const double gap = uv[1] - HeightAt(parameters, neighbor, uv[0]);
-    const double up = gap > 0 ? 1.0 : -1.0;
-    const Eigen::Vector2d move = WalkFrom(surface, uv, up * AcrossRow(surface, uv), length_m) - uv;
-    const double farther = std::abs(gap / move[1]);
-    moves.push_back(farther * move);
-    sum += farther;
+  if (length_m == 0) return places;
+  const double up = length_m > 0 ? 1.0 : -1.0;
+  for (Eigen::Vector2d& uv : places) {
+    uv = WalkFrom(surface, uv, up * AcrossRow(surface, uv), std::abs(length_m));
   }
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    places[k] += static_cast<double>(places.size()) / sum * moves[k];
+  return places;
+}
+
+// The places on luff or leech, from foot to head: the ends of the rows, and the points of the edge
+// between them. `outwards` is the direction of u to the edge. Where foot or head are given and do
+// not reach the edge, their ends say nothing about it.
+std::vector<Eigen::Vector2d> AlongSide(const SplineSurface& surface,
+                                       const SurfaceParameters& parameters,
+                                       const ObservedEdge& edge,
+                                       const std::vector<Eigen::Vector2d>& row_ends,
+                                       double outwards) {
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t j = 0; j < row_ends.size(); ++j) {
+    if (!edge.is_known || !parameters.rows[j].is_edge) places.push_back(row_ends[j]);
   }
+  for (std::size_t k = edge.first_idx; k < edge.first_idx + edge.num_points; ++k) {
+    const Eigen::Vector2d uv = FootOfCenter(surface, parameters.observations[k]);
+    places.push_back(edge.beyond_m > 0
+                         ? WalkFrom(surface, uv, Eigen::Vector2d(outwards, 0), edge.beyond_m)
+                         : uv);
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[1] < b[1]; });
   return places;
 }
 
 // The observations have to be at their feet.
 SurfaceOutline OutlineAtFeet(const SplineSurface& surface, const SurfaceParameters& parameters) {
-  SurfaceOutline outline;
+  std::vector<Eigen::Vector2d> firsts, lasts;
   for (const ObservedRow& row : parameters.rows) {
-    outline.luff.push_back(EndOf(surface, parameters, row.first_idx, row.last_idx, row.before_m));
-    outline.leech.push_back(EndOf(surface, parameters, row.last_idx, row.first_idx, row.after_m));
+    firsts.push_back(EndOf(surface, parameters, row.first_idx, row.last_idx, row.before_m));
+    lasts.push_back(EndOf(surface, parameters, row.last_idx, row.first_idx, row.after_m));
   }
   const auto& rows = parameters.rows;
-  outline.foot = BesideRow(surface, parameters, rows.front(), rows[1], outline.luff.front(),
-                           outline.leech.front(), parameters.below_m);
-  outline.head = BesideRow(surface, parameters, rows.back(), rows[rows.size() - 2],
-                           outline.luff.back(), outline.leech.back(), parameters.above_m);
+  SurfaceOutline outline;
+  outline.luff = AlongSide(surface, parameters, parameters.luff, firsts, -1.0);
+  outline.leech = AlongSide(surface, parameters, parameters.leech, lasts, 1.0);
+  outline.foot = BesideRow(surface, parameters, rows.front(), firsts.front(), lasts.front(),
+                           -parameters.below_m);
+  outline.head =
+      BesideRow(surface, parameters, rows.back(), firsts.back(), lasts.back(), parameters.above_m);
   return outline;
 }
 

@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// Places (u, v) of a surface at which the cloth ends: one per row for luff and leech, from foot to
-// head; along the outer rows for foot and head, from luff to leech.
+// Places (u, v) of a surface at which the cloth ends: the ends of the rows and the given points of
+// luff and leech, from foot to head; along the outer rows for foot and head, from luff to leech.
 struct SurfaceOutline {
   std::vector<Eigen::Vector2d> luff, leech, foot, head;
 };

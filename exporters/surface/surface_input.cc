@@ -8,6 +8,7 @@
 
 #include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
+#include "exporters/surface/surface_rows.h"
 
 namespace velamap {
 namespace {
@@ -43,26 +44,100 @@ std::optional<double> OffsetOf(const ClothEdge& edge, std::size_t line_idx) {
   return edge.offsets_m[edge.offsets_m.size() == 1 ? 0 : line_idx];
 }
 
-// The whole markers of the vertical line on the edge; fewer than two are no edge, which is noted.
-std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
-                                      const LayoutPart& part, const MarkerShape& shape,
-                                      std::string* note) {
-  std::vector<Eigen::Vector3d> points;
+// For luff and leech: the offset of a line, unless it counts from places along the edge.
+std::optional<double> OffsetFromLine(const ClothEdge& edge, std::size_t line_idx) {
+  return edge.HasPlaces() ? std::nullopt : OffsetOf(edge, line_idx);
+}
+
+// For foot and head, whose line is an outer one of the surface.
+std::optional<double> OffsetFromOuterLine(const ClothEdge& edge) {
+  if (!edge.line.empty()) return OffsetOf(edge, 0).value_or(0.0);
+  return OffsetFromLine(edge, 0);
+}
+
+// One of the four edges, where the layout names places along it.
+struct EdgeOfPlaces {
+  const char* name;
+  bool is_side;  // luff or leech
+  const ClothEdge& in_layout;
+  std::vector<Eigen::Vector3d>& points_m;
+  double& beyond_m;
+  std::string& note;
+};
+
+std::vector<EdgeOfPlaces> EdgesOfPlaces(const LayoutPart& part, SurfaceInput* input) {
+  SurfaceEdges& edges = input->edges;
+  return {{"luff", true, part.edges.luff, edges.luff, edges.beyond_luff_m, input->luff_note},
+          {"leech", true, part.edges.leech, edges.leech, edges.beyond_leech_m, input->leech_note},
+          {"foot", false, part.edges.foot, edges.foot, edges.beyond_foot_m, input->foot_note},
+          {"head", false, part.edges.head, edges.head, edges.beyond_head_m, input->head_note}};
+}
+
+// The points along an edge that the layout names, by its vertical line or one by one.
+std::vector<CornerId> NamedPoints(const EdgeOfPlaces& edge, const LayoutPart& part) {
+  std::vector<CornerId> points = edge.in_layout.points;
   for (const MarkerLine& line : part.vertical) {
-    if (edge.line.empty() || line.name != edge.line) continue;
-    for (const int id : line.marker_ids) {
-      const ShapeMarker* marker = FindWholeMarker(shape, id);
-      if (marker != nullptr) points.push_back(*marker->x_in_shape_m[0]);
-    }
+    if (!edge.is_side || line.name != edge.in_layout.line) continue;
+    for (const int id : line.marker_ids) points.push_back({id, 0});
   }
-  if (points.size() >= 2) return points;
-  if (!edge.line.empty()) {
-    *note = fmt::format(
-        "{}: {} of the markers of its line {} are whole, 2 needed; the surface ends at the outer "
-        "markers of the other lines",
-        name, points.size(), edge.line);
+  return points;
+}
+
+// Sets the points of the edge that the shape has; fewer than two are no edge, which is noted.
+// Markers at points where the cloth ends are removed from `others`.
+void SetPoints(const MarkerShape& shape, const LayoutPart& part, EdgeOfPlaces edge,
+               std::set<int>* others) {
+  const std::vector<CornerId> named = NamedPoints(edge, part);
+  if (named.empty()) return;
+  std::vector<Eigen::Vector3d> points_m;
+  for (const CornerId& point : named) {
+    const ShapeMarker* marker = FindWholeMarker(shape, point.marker_id);
+    if (marker == nullptr) continue;
+    points_m.push_back(*marker->x_in_shape_m[static_cast<std::size_t>(point.corner)]);
   }
-  return {};
+  if (points_m.size() < 2) {
+    const std::string& line = edge.in_layout.line;
+    edge.note =
+        fmt::format("{}: {} of {} are whole, 2 needed; the surface ends at the outer markers{}",
+                    edge.name, points_m.size(),
+                    line.empty() ? "the markers of its points" : "the markers of its line " + line,
+                    edge.is_side ? " of the other lines" : "");
+    return;
+  }
+  edge.points_m = points_m;
+  edge.beyond_m = OffsetOf(edge.in_layout, 0).value_or(0.0);
+  for (const CornerId& point : named) {
+    if (point.corner == 0 && edge.beyond_m <= 0) others->erase(point.marker_id);
+  }
+}
+
+bool RunsAgainst(const std::vector<Eigen::Vector3d>& points_m, const Eigen::Vector3d& direction) {
+  return !points_m.empty() && (points_m.back() - points_m.front()).dot(direction) < 0;
+}
+
+// Turns round foot and head where they are named from leech to luff.
+void OrderFromLuffToLeech(SurfaceInput* input) {
+  Eigen::Vector3d aft = Eigen::Vector3d::Zero();
+  for (const SurfaceLine& line : input->lines) {
+    const std::vector<Eigen::Vector3d> points_m = PresentPoints(line);
+    if (points_m.size() >= 2) aft += (points_m.back() - points_m.front()).normalized();
+  }
+  for (auto* edge : {&input->edges.foot, &input->edges.head}) {
+    if (RunsAgainst(*edge, aft)) std::reverse(edge->begin(), edge->end());
+  }
+}
+
+// Where the lines named as foot or head are not the outer ones of this shape.
+void CheckOuterLines(const LayoutPart& part, SurfaceInput* input) {
+  const auto check = [](const char* name, const ClothEdge& edge, const SurfaceLine& outer,
+                        std::optional<double>* offset_m, std::string* note) {
+    if (edge.line.empty() || edge.line == outer.name) return;
+    offset_m->reset();
+    *note = fmt::format("{}: its line {} is at the other end of the sail; the surface ends at {}",
+                        name, edge.line, outer.name);
+  };
+  check("foot", part.edges.foot, input->lines.front(), &input->foot_offset_m, &input->foot_note);
+  check("head", part.edges.head, input->lines.back(), &input->head_offset_m, &input->head_note);
 }
 
 // Turns round the lines and the edges that the layout lists from head to foot. The offsets of foot
@@ -88,33 +163,28 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
   for (const MarkerLine& line : part.horizontal) {
     const std::size_t idx = input.lines.size();
     SurfaceLine surface_line{
-        line.name, {}, OffsetOf(part.edges.luff, idx), OffsetOf(part.edges.leech, idx)};
+        line.name, {}, OffsetFromLine(part.edges.luff, idx), OffsetFromLine(part.edges.leech, idx)};
     for (const int marker_id : line.marker_ids) {
       surface_line.markers.push_back(Find(shape, marker_id));
       on_lines.insert(marker_id);
     }
     input.lines.push_back(surface_line);
   }
-  input.foot_offset_m = OffsetOf(part.edges.foot, 0);
-  input.head_offset_m = OffsetOf(part.edges.head, 0);
-  input.edges.luff = PointsOf("luff", part.edges.luff, part, shape, &input.luff_note);
-  input.edges.leech = PointsOf("leech", part.edges.leech, part, shape, &input.leech_note);
+  input.foot_offset_m = OffsetFromOuterLine(part.edges.foot);
+  input.head_offset_m = OffsetFromOuterLine(part.edges.head);
   for (const MarkerLine& line : part.vertical) {
     others.insert(line.marker_ids.begin(), line.marker_ids.end());
   }
-  // Markers on an edge are points of the edge.
-  for (const MarkerLine& line : part.vertical) {
-    const bool is_edge = (line.name == part.edges.luff.line && !input.edges.luff.empty()) ||
-                         (line.name == part.edges.leech.line && !input.edges.leech.empty());
-    for (const int marker_id : line.marker_ids) {
-      if (is_edge) others.erase(marker_id);
-    }
+  for (const EdgeOfPlaces& edge : EdgesOfPlaces(part, &input)) {
+    SetPoints(shape, part, edge, &others);
   }
   for (const int marker_id : others) {
     if (on_lines.count(marker_id) > 0) continue;
     if (const auto marker = Find(shape, marker_id)) input.markers.push_back(*marker);
   }
   OrderFromFootToHead(shape, part, up_in_shape, &input);
+  OrderFromLuffToLeech(&input);
+  if (!input.lines.empty()) CheckOuterLines(part, &input);
   return input;
 }
 

@@ -37,6 +37,8 @@ struct SurfaceLine {
 // leech from foot to head, foot and head from luff to leech. An unknown edge is empty.
 struct SurfaceEdges {
   std::vector<Eigen::Vector3d> luff, leech, foot, head;
+  // How far beyond these points the cloth ends, along it, m.
+  double beyond_luff_m = 0.0, beyond_leech_m = 0.0, beyond_foot_m = 0.0, beyond_head_m = 0.0;
 };
 
 struct SurfaceInput {
@@ -44,19 +46,20 @@ struct SurfaceInput {
   std::vector<SurfaceMarker> markers;  // markers of the part on no horizontal line
   // Distances from the lowest and the highest line that the layout lists to the edge of the cloth.
   std::optional<double> foot_offset_m{}, head_offset_m{};
-  SurfaceEdges edges{};  // by lines of markers on them
-  // Why the line of markers on the luff or leech gives no edge; empty if it gives one, or if there
-  // is no such line.
-  std::string luff_note{}, leech_note{};
+  SurfaceEdges edges{};  // by lines of markers or points of markers along them
+  // Why the line or the points of the layout give no edge; empty if they give one, or if there are
+  // none.
+  std::string luff_note{}, leech_note{}, foot_note{}, head_note{};
 };
 
 // Collects the horizontal lines of `part` from foot to head, its other markers, and the places of
-// its edges from the layout. Uses whole markers only. Lines that the layout lists from head to foot
-// are turned round: they run against `up_in_shape`, a unit vector, or without one against the
-// vertical lines. The sigma of a marker is the root mean square of the three sigmas of its centre,
-// with the errors that it shares with others: neighbours share some that bend the surface, which
-// the noise of single markers does not show. The sigma of its tilt follows from the part of the
-// corners' variances that exceeds the variance of the centre.
+// its edges from the layout. Uses whole markers only. A marker on no horizontal line whose centre
+// is a point of an edge belongs to the edge, unless the cloth goes on beyond it. Lines that the
+// layout lists from head to foot are turned round: they run against `up_in_shape`, a unit vector,
+// or without one against the vertical lines. The sigma of a marker is the root mean square of the
+// three sigmas of its centre, with the errors that it shares with others: neighbours share some
+// that bend the surface, which the noise of single markers does not show. The sigma of its tilt
+// follows from the part of the corners' variances that exceeds the variance of the centre.
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part,
                                  const std::optional<Eigen::Vector3d>& up_in_shape = std::nullopt);
 

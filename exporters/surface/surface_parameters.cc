@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -52,6 +53,45 @@ void CheckExtension(const SurfaceOptions& options,
                                std::floor(max_mm), size_name));
 }
 
+// The place of a point of an edge, by the ends of the rows beside it.
+Eigen::Vector2d PlaceBeside(const std::vector<SurfaceObservation>& ends, const Eigen::Vector3d& x) {
+  double least_m = std::numeric_limits<double>::infinity();
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    const SurfaceObservation &low = ends[k - 1], &high = ends[k];
+    const Eigen::Vector3d along_m = high.Center() - low.Center();
+    double part = along_m.dot(x - low.Center()) / along_m.squaredNorm();
+    if (k > 1) part = std::max(part, 0.0);
+    if (k + 1 < ends.size()) part = std::min(part, 1.0);
+    const double distance_m = (low.Center() + part * along_m - x).norm();
+    if (!(distance_m < least_m)) continue;
+    least_m = distance_m;
+    place = {low.u + part * (high.u - low.u), low.v + part * (high.v - low.v)};
+  }
+  return place;
+}
+
+void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m,
+                 std::size_t ObservedRow::*end_idx, ObservedEdge* edge,
+                 SurfaceParameters* parameters) {
+  constexpr double kSamePlace_m = 1e-6;
+  std::vector<SurfaceObservation> ends;
+  for (const ObservedRow& row : parameters->rows) {
+    ends.push_back(parameters->observations[row.*end_idx]);
+  }
+  edge->first_idx = parameters->observations.size();
+  edge->beyond_m = beyond_m;
+  for (const Eigen::Vector3d& x : SomePoints(points)) {
+    const bool is_end = std::any_of(ends.begin(), ends.end(), [&](const SurfaceObservation& end) {
+      return (end.Center() - x).norm() < kSamePlace_m;
+    });
+    if (is_end) continue;
+    const Eigen::Vector2d uv = PlaceBeside(ends, x);
+    parameters->observations.push_back({-1, "", uv[0], uv[1], {{x, uv[0], uv[1]}}});
+  }
+  edge->num_points = parameters->observations.size() - edge->first_idx;
+}
+
 }  // namespace
 
 Eigen::Vector3d SurfaceObservation::Center() const {
@@ -70,8 +110,9 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
     CheckExtension(options, extension_mm, length_m, "the length of the lines");
   }
   const std::vector<SurfaceRow> rows = MakeSurfaceRows(lines, options, &parameters.notes);
-  parameters.below_m = kMPerMm * options.foot_extension_mm.value_or(0.0);
-  parameters.above_m = kMPerMm * options.head_extension_mm.value_or(0.0);
+  const SurfaceEdges& edges = options.edges;
+  parameters.below_m = edges.beyond_foot_m + kMPerMm * options.foot_extension_mm.value_or(0.0);
+  parameters.above_m = edges.beyond_head_m + kMPerMm * options.head_extension_mm.value_or(0.0);
   std::vector<double> heights_m = {parameters.below_m};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
@@ -84,13 +125,21 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
   }
   parameters.length_v_m = heights_m.back() + parameters.above_m;
 
+  const auto has = [&](std::optional<double> SurfaceLine::*offset_m) {
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const SurfaceLine& line) { return (line.*offset_m).has_value(); });
+  };
+  parameters.luff.is_known = !edges.luff.empty() || options.luff_extension_mm.has_value() ||
+                             has(&SurfaceLine::luff_offset_m);
+  parameters.leech.is_known = !edges.leech.empty() || options.leech_extension_mm.has_value() ||
+                              has(&SurfaceLine::leech_offset_m);
   std::vector<double> all_us, line_vs;
   std::size_t max_points = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const double v = heights_m[j] / parameters.length_v_m;
     const std::size_t first = parameters.observations.size();
-    parameters.rows.push_back(
-        {first, first + rows[j].points.size() - 1, rows[j].before_m, rows[j].after_m});
+    parameters.rows.push_back({first, first + rows[j].points.size() - 1, rows[j].before_m,
+                               rows[j].after_m, rows[j].is_edge});
     for (std::size_t k = 0; k < rows[j].points.size(); ++k) {
       const bool is_marker = rows[j].marker_ids[k] >= 0;
       parameters.observations.push_back({rows[j].marker_ids[k],
@@ -113,6 +162,13 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
   if (parameters.degree_v == 3) interior_v = QuantileKnots(line_vs, num_spans_v);
   parameters.knots_v = ClampedKnots(parameters.degree_v, interior_v);
   return parameters;
+}
+
+void AddEdgePoints(const SurfaceEdges& edges, SurfaceParameters* parameters) {
+  AddPointsOf(edges.luff, edges.beyond_luff_m, &ObservedRow::first_idx, &parameters->luff,
+              parameters);
+  AddPointsOf(edges.leech, edges.beyond_leech_m, &ObservedRow::last_idx, &parameters->leech,
+              parameters);
 }
 
 }  // namespace velamap

@@ -30,11 +30,21 @@ struct SurfaceObservation {
 struct ObservedRow {
   std::size_t first_idx = 0, last_idx = 0;
   double before_m = 0.0, after_m = 0.0;
+  bool is_edge = false;  // foot or head, where they are given
+};
+
+// Luff or leech. Where it is given, some of its points are observations, neighbours in the list.
+struct ObservedEdge {
+  // Given, or offset from the lines. Otherwise the surface ends at the ends of all rows.
+  bool is_known = false;
+  std::size_t first_idx = 0, num_points = 0;
+  double beyond_m = 0.0;  // how far the surface continues beyond these points
 };
 
 struct SurfaceParameters {
   std::vector<SurfaceObservation> observations;
   std::vector<ObservedRow> rows;  // from foot to head
+  ObservedEdge luff, leech;
   // How far the surface continues below the first row and above the last one.
   double below_m = 0.0, above_m = 0.0;
   int degree_u = 3, degree_v = 3;
@@ -49,5 +59,9 @@ struct SurfaceParameters {
 // surface can follow them. Throws the same errors as FitSurface.
 SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool shows_between,
                                    const SurfaceOptions& options);
+
+// Adds the points of the given luff and leech, beside the ends of the rows. Otherwise the surface
+// would meet these edges on the lines only.
+void AddEdgePoints(const SurfaceEdges& edges, SurfaceParameters* parameters);
 
 }  // namespace velamap

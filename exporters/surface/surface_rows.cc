@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unsupported/Eigen/Splines>
 
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -88,9 +89,11 @@ void CheckApart(const SurfaceLine& line, const PresentMarkers& present) {
   }
 }
 
-// One end of a line: how far the surface continues beyond the last marker, and the edge point.
+// One end of a line: how far the surface continues beyond the last marker, how far beyond the last
+// point, and the point on a given edge.
 struct LineEnd {
   double length_m = 0.0;
+  double after_point_m = 0.0;
   std::optional<Eigen::Vector3d> edge_point;
 };
 
@@ -99,13 +102,14 @@ double BeyondMarkers(const std::optional<double>& extension_mm,
   return extension_mm ? kMPerMm * *extension_mm : offset_m.value_or(0.0);
 }
 
-LineEnd MakeLineEnd(const Polyline& edge, double extension_m, double missing_m,
+// `edge` is the curve that SmoothEdge() makes, and the cloth ends `beyond_m` farther out.
+LineEnd MakeLineEnd(const Polyline& edge, double beyond_m, double extension_m, double missing_m,
                     const Eigen::Vector3d& last, const Eigen::Vector3d& before_last) {
-  if (edge.empty()) return {missing_m + extension_m, std::nullopt};
+  if (edge.empty()) return {missing_m + extension_m, missing_m + extension_m, std::nullopt};
   const Eigen::Vector3d x = NearestToRay(edge, last, (last - before_last).normalized());
   const double length_m = (x - last).norm();
-  if (length_m < 1e-6) return {};  // the marker lies on the edge
-  return {length_m, x};
+  if (length_m < 1e-6) return {beyond_m, beyond_m, std::nullopt};  // the marker lies on the edge
+  return {length_m + beyond_m, beyond_m, x};
 }
 
 SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
@@ -117,37 +121,50 @@ SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
   const double place_spacing = lengths.back() / (present.places.back() - present.places.front());
   const std::size_t n = present.points.size();
   const LineEnd luff =
-      MakeLineEnd(options.edges.luff, BeyondMarkers(options.luff_extension_mm, line.luff_offset_m),
+      MakeLineEnd(options.edges.luff, options.edges.beyond_luff_m,
+                  BeyondMarkers(options.luff_extension_mm, line.luff_offset_m),
                   place_spacing * present.places.front(), present.points[0], present.points[1]);
-  const LineEnd leech = MakeLineEnd(
-      options.edges.leech, BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
-      place_spacing * (line.markers.size() - 1 - present.places.back()), present.points[n - 1],
-      present.points[n - 2]);
-  SurfaceRow row{line.name, present.marker_ids, present.points, {}};
-  row.before_m = luff.edge_point ? 0.0 : luff.length_m;
-  row.after_m = leech.edge_point ? 0.0 : leech.length_m;
+  const LineEnd leech =
+      MakeLineEnd(options.edges.leech, options.edges.beyond_leech_m,
+                  BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
+                  place_spacing * (line.markers.size() - 1 - present.places.back()),
+                  present.points[n - 1], present.points[n - 2]);
+  SurfaceRow row{line.name, false, present.marker_ids, present.points, {}};
+  row.before_m = luff.after_point_m;
+  row.after_m = leech.after_point_m;
   row.length_m = luff.length_m + lengths.back() + leech.length_m;
   for (const double length : lengths) row.us.push_back((luff.length_m + length) / row.length_m);
   if (luff.edge_point) {
     row.marker_ids.insert(row.marker_ids.begin(), -1);
     row.points.insert(row.points.begin(), *luff.edge_point);
-    row.us.insert(row.us.begin(), 0.0);
+    row.us.insert(row.us.begin(), row.before_m / row.length_m);
   }
   if (leech.edge_point) {
     row.marker_ids.push_back(-1);
     row.points.push_back(*leech.edge_point);
-    row.us.push_back(1.0);
+    row.us.push_back(1.0 - row.after_m / row.length_m);
   }
   return row;
 }
 
-SurfaceRow MakeEdgeRow(const std::string& name, const Polyline& edge) {
-  SurfaceRow row{name, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge)};
+// Its u follow from where its ends are beside the nearest line.
+SurfaceRow MakeEdgeRow(const std::string& name, const Polyline& edge, const SurfaceRow& line) {
+  SurfaceRow row{name, true, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge)};
   row.length_m = row.us.back();
   if (row.length_m < 1e-6) {
     throw InputError(fmt::format("the {} edge has no length; remove it", name));
   }
-  for (double& u : row.us) u /= row.length_m;
+  const Eigen::Vector3d chord_m = line.points.back() - line.points.front();
+  const auto beside = [&](const Eigen::Vector3d& x) {
+    const double part = chord_m.dot(x - line.points.front()) / chord_m.squaredNorm();
+    return std::clamp(line.us.front() + part * (line.us.back() - line.us.front()), 0.0, 1.0);
+  };
+  const double first = beside(edge.front()), last = beside(edge.back());
+  const bool is_beside = last - first > 0.1;
+  for (double& u : row.us) {
+    u /= row.length_m;
+    if (is_beside) u = first + u * (last - first);
+  }
   return row;
 }
 
@@ -170,6 +187,44 @@ std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
   return lengths;
 }
 
+std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kCubic = 3, kStepsPerPoint = 8;
+  if (points.size() < 2) return points;
+  const auto n = static_cast<Eigen::Index>(points.size());
+  const std::vector<double> lengths_m = ChordLengths(points);
+  const Eigen::Map<const Eigen::Matrix3Xd> places_m(points.front().data(), 3, n);
+  const Eigen::RowVectorXd places =
+      Eigen::Map<const Eigen::RowVectorXd>(lengths_m.data(), n) / lengths_m.back();
+  using Spline = Eigen::Spline<double, 3>;
+  const Spline curve = Eigen::SplineFitting<Spline>::Interpolate(
+      places_m, std::min<Eigen::Index>(kCubic, n - 1), places);
+  Polyline smooth;
+  const int num_steps = kStepsPerPoint * static_cast<int>(n - 1);
+  for (int k = 0; k <= num_steps; ++k) {
+    smooth.emplace_back(curve(static_cast<double>(k) / num_steps));
+  }
+  // A line beside the ends of an edge meets it as the edge goes on there.
+  const double spacing_m = lengths_m.back() / static_cast<double>(n - 1);
+  const auto go_on = [&](const Eigen::Vector3d& end, const Eigen::Vector3d& before_end) {
+    return Eigen::Vector3d(end + spacing_m * (end - before_end).normalized());
+  };
+  smooth.insert(smooth.begin(), go_on(smooth[0], smooth[1]));
+  smooth.push_back(go_on(smooth.back(), smooth[smooth.size() - 2]));
+  return smooth;
+}
+
+std::vector<Eigen::Vector3d> SomePoints(const std::vector<Eigen::Vector3d>& points) {
+  constexpr std::size_t kMaxPoints = 40;
+  constexpr double kApart_m = 1e-6;
+  const std::size_t n = std::min(points.size(), kMaxPoints);
+  Polyline some;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Eigen::Vector3d& x = points[n < 2 ? k : k * (points.size() - 1) / (n - 1)];
+    if (some.empty() || (x - some.back()).norm() > kApart_m) some.push_back(x);
+  }
+  return some;
+}
+
 double MeanLength(const std::vector<SurfaceLine>& lines) {
   double sum_m = 0.0;
   for (const SurfaceLine& line : lines) sum_m += ChordLengths(PresentPoints(line)).back();
@@ -179,10 +234,18 @@ double MeanLength(const std::vector<SurfaceLine>& lines) {
 std::vector<SurfaceRow> MakeSurfaceRows(const std::vector<SurfaceLine>& lines,
                                         const SurfaceOptions& options,
                                         std::vector<std::string>* notes) {
+  SurfaceOptions smooth = options;
+  for (auto* edge : {&smooth.edges.luff, &smooth.edges.leech})
+    *edge = SmoothEdge(SomePoints(*edge));
   std::vector<SurfaceRow> rows;
-  if (!options.edges.foot.empty()) rows.push_back(MakeEdgeRow("foot", options.edges.foot));
-  for (const SurfaceLine& line : lines) rows.push_back(MakeRow(line, options, notes));
-  if (!options.edges.head.empty()) rows.push_back(MakeEdgeRow("head", options.edges.head));
+  for (const SurfaceLine& line : lines) rows.push_back(MakeRow(line, smooth, notes));
+  const SurfaceEdges& edges = options.edges;
+  if (!edges.foot.empty()) {
+    rows.insert(rows.begin(), MakeEdgeRow("foot", SomePoints(edges.foot), rows.front()));
+  }
+  if (!edges.head.empty()) {
+    rows.push_back(MakeEdgeRow("head", SomePoints(edges.head), rows.back()));
+  }
   return rows;
 }
 

@@ -14,6 +14,7 @@ namespace velamap {
 
 struct SurfaceRow {
   std::string name;
+  bool is_edge = false;  // foot or head, where they are given
   std::vector<int> marker_ids;
   std::vector<Eigen::Vector3d> points;
   std::vector<double> us;
@@ -31,9 +32,18 @@ std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points);
 // Mean length of the lines, from the first marker to the last.
 double MeanLength(const std::vector<SurfaceLine>& lines);
 
+// The points of an edge, or some of them where they are many, each place once.
+std::vector<Eigen::Vector3d> SomePoints(const std::vector<Eigen::Vector3d>& points);
+
+// The smooth curve through such points as a polyline with short steps. It goes on straight beyond
+// them by their mean distance.
+std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& points);
+
 // u is the chord length from the luff over the length of the whole line. A missing marker at the
 // end of a line counts with the mean spacing of the line, so that the edge of the surface keeps its
-// place. Throws DataError for two markers in one place and InputError for an edge without a length.
+// place. On a given luff or leech, each line gets a point where it meets the smooth curve through
+// the points of the edge. Throws DataError for two markers in one place and InputError for an edge
+// without a length.
 std::vector<SurfaceRow> MakeSurfaceRows(const std::vector<SurfaceLine>& lines,
                                         const SurfaceOptions& options,
                                         std::vector<std::string>* notes);

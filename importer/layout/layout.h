@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "importer/base/ids.h"
 #include "importer/layout/frame_choice.h"
 #include "importer/layout/known_point.h"
 
@@ -22,14 +23,19 @@ struct MarkerLine {
   std::vector<int> marker_ids;
 };
 
-// Where an edge of the cloth is; unknown if both members are empty.
+// Where an edge of the cloth is; unknown if all members are empty.
 struct ClothEdge {
   // Distances along the surface from the centres of the outer markers to the edge, m: one distance,
-  // or for luff and leech also one for each horizontal line.
+  // or for luff and leech also one for each horizontal line. Beyond a line or points: one at most.
   std::vector<double> offsets_m;
-  std::string line;  // for luff or leech: the vertical line of markers that lies on the edge
+  // The line of markers that lies along the edge: a vertical one for luff and leech, the first or
+  // the last horizontal one for foot and head.
+  std::string line;
+  // Two or more points of markers along the edge; corner 0 is the centre.
+  std::vector<CornerId> points{};
 
-  bool IsKnown() const { return !offsets_m.empty() || !line.empty(); }
+  bool IsKnown() const { return !offsets_m.empty() || !line.empty() || !points.empty(); }
+  bool HasPlaces() const { return !line.empty() || !points.empty(); }
 };
 
 struct ClothEdges {

@@ -12,6 +12,8 @@
 namespace velamap {
 namespace {
 
+enum class EdgeKind { kSide, kEnd };  // luff and leech; foot and head
+
 double ReadPositiveMetres(const YamlItem& item) {
   constexpr double kMaxLength_m = 1e5;
   const double length_m = ReadMetres(item);
@@ -56,34 +58,80 @@ double ReadOffset(const YamlItem& item) {
   return offset_m;
 }
 
-// Reads the edge at the foot or the head.
-ClothEdge ReadEndEdge(const YamlItem& item) {
-  if (!item.node.IsScalar()) item.Fail("one distance in m is expected, such as 0.12");
-  return {{ReadOffset(item)}, ""};
+// A vertical line for luff and leech. The lines of foot and head are the outer horizontal ones: the
+// surface ends at them, or `offset` beyond.
+void CheckEdgeLine(const YamlItem& item, const std::string& name, const LayoutPart& part,
+                   EdgeKind kind) {
+  const auto is_it = [&](const MarkerLine& line) { return line.name == name; };
+  if (kind == EdgeKind::kEnd && !is_it(part.horizontal.front()) && !is_it(part.horizontal.back())) {
+    item.Fail(fmt::format(
+        "'{}' is neither the first nor the last horizontal line; expected '{}' or '{}', "
+        "or {{points: [...]}} for markers on no line",
+        name, part.horizontal.front().name, part.horizontal.back().name));
+  }
+  if (kind == EdgeKind::kSide && std::none_of(part.vertical.begin(), part.vertical.end(), is_it)) {
+    item.Fail(
+        fmt::format("there is no vertical line '{}'; expected a distance in m, a list of them, "
+                    "{{line: name}} or {{points: [...]}}",
+                    name));
+  }
 }
 
-// Reads the edge at the luff or the leech.
-ClothEdge ReadSideEdge(const YamlItem& item, const LayoutPart& part) {
+std::vector<CornerId> ReadEdgePoints(const YamlItem& list, const LayoutPart& part, EdgeKind kind) {
+  const std::set<int> ids = MarkerIds(part);
+  std::vector<CornerId> points;
+  ForEachElement(list, [&](const YamlItem& item) {
+    CornerId point;
+    ReadMarkerPoint(item, &point.marker_id, &point.corner);
+    const int id = point.marker_id;
+    if (ids.count(id) == 0) {
+      item.Fail(fmt::format("marker {} is not in the part; name it there or correct its id", id));
+    }
+    if (std::count(points.begin(), points.end(), point) > 0) {
+      item.Fail(fmt::format("point {} is named twice", PointName(id, point.corner)));
+    }
+    for (const MarkerLine& line : part.horizontal) {
+      const bool is_on = std::count(line.marker_ids.begin(), line.marker_ids.end(), id) > 0;
+      if (kind == EdgeKind::kSide || point.corner != 0 || !is_on) continue;
+      item.Fail(
+          fmt::format("the centre of marker {} is on the line {}, which cannot also be the edge; "
+                      "name a corner of it, such as {}, or {{line: {}}}",
+                      id, line.name, PointName(id, kNumCorners), line.name));
+    }
+    points.push_back(point);
+  });
+  if (points.size() < 2) list.Fail("one point is no edge; name two or more, such as [12, 13.4]");
+  return points;
+}
+
+// Reads what lies along the edge.
+ClothEdge ReadPlacesOfEdge(const YamlItem& item, const LayoutPart& part, EdgeKind kind) {
+  ClothEdge edge;
+  ReadMap(item,
+          {{"line", [&](const YamlItem& v) { edge.line = ReadString(v); }},
+           {"points", [&](const YamlItem& v) { edge.points = ReadEdgePoints(v, part, kind); }},
+           {"offset", [&](const YamlItem& v) { edge.offsets_m = {ReadOffset(v)}; }}});
+  if (edge.line.empty() == edge.points.empty()) {
+    item.Fail("one of line and points is expected, such as {line: v1} or {points: [12, 13.4]}");
+  }
+  if (!edge.line.empty()) CheckEdgeLine(item, edge.line, part, kind);
+  return edge;
+}
+
+ClothEdge ReadEdge(const YamlItem& item, const LayoutPart& part, EdgeKind kind) {
+  if (item.node.IsMap()) return ReadPlacesOfEdge(item, part, kind);
   ClothEdge edge;
   if (item.node.IsScalar()) {
     edge.offsets_m = {ReadOffset(item)};
-  } else if (item.node.IsSequence()) {
-    ForEachElement(item, [&](const YamlItem& v) { edge.offsets_m.push_back(ReadOffset(v)); });
-    if (edge.offsets_m.size() != part.horizontal.size()) {
-      item.Fail(
-          fmt::format("{} distances for {} horizontal lines; give one for each, or one for all",
-                      edge.offsets_m.size(), part.horizontal.size()));
-    }
-  } else {
-    ReadMap(item, {{"line", [&](const YamlItem& v) { edge.line = ReadString(v); }}});
-    const bool known = std::any_of(part.vertical.begin(), part.vertical.end(),
-                                   [&](const MarkerLine& line) { return line.name == edge.line; });
-    if (!known) {
-      item.Fail(
-          fmt::format("there is no vertical line '{}'; expected a distance in m, a list of "
-                      "them, or {{line: name}}",
-                      edge.line));
-    }
+    return edge;
+  }
+  if (kind == EdgeKind::kEnd) {
+    item.Fail("one distance in m is expected, such as 0.12, or {line: name}, or {points: [...]}");
+  }
+  ForEachElement(item, [&](const YamlItem& v) { edge.offsets_m.push_back(ReadOffset(v)); });
+  if (edge.offsets_m.size() != part.horizontal.size()) {
+    item.Fail(fmt::format("{} distances for {} horizontal lines; give one for each, or one for all",
+                          edge.offsets_m.size(), part.horizontal.size()));
   }
   return edge;
 }
@@ -158,10 +206,16 @@ void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
 ClothEdges ReadEdges(const YamlItem& item, const LayoutPart& part) {
   if (part.horizontal.empty()) item.Fail("the edges of a part without horizontal lines are unused");
   ClothEdges edges;
-  ReadMap(item, {{"luff", [&](const YamlItem& v) { edges.luff = ReadSideEdge(v, part); }},
-                 {"leech", [&](const YamlItem& v) { edges.leech = ReadSideEdge(v, part); }},
-                 {"foot", [&](const YamlItem& v) { edges.foot = ReadEndEdge(v); }},
-                 {"head", [&](const YamlItem& v) { edges.head = ReadEndEdge(v); }}});
+  const auto read = [&](ClothEdge* edge, EdgeKind kind) {
+    return [edge, kind, &part](const YamlItem& v) { *edge = ReadEdge(v, part, kind); };
+  };
+  ReadMap(item, {{"luff", read(&edges.luff, EdgeKind::kSide)},
+                 {"leech", read(&edges.leech, EdgeKind::kSide)},
+                 {"foot", read(&edges.foot, EdgeKind::kEnd)},
+                 {"head", read(&edges.head, EdgeKind::kEnd)}});
+  if (!edges.foot.line.empty() && edges.foot.line == edges.head.line) {
+    item.Fail(fmt::format("foot and head are the same line '{}'", edges.foot.line));
+  }
   return edges;
 }
 

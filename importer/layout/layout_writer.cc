@@ -32,8 +32,16 @@ void EmitLines(const char* key, const std::vector<MarkerLine>& lines, YAML::Emit
 void EmitEdge(const char* key, const ClothEdge& edge, YAML::Emitter* out) {
   if (!edge.IsKnown()) return;
   *out << key;
-  if (!edge.line.empty()) {
-    *out << YAML::BeginMap << "line" << edge.line << YAML::EndMap;
+  if (edge.HasPlaces()) {
+    *out << YAML::BeginMap;
+    if (!edge.line.empty()) *out << "line" << edge.line;
+    if (!edge.points.empty()) {
+      *out << "points" << YAML::BeginSeq;
+      for (const CornerId& point : edge.points) *out << PointName(point.marker_id, point.corner);
+      *out << YAML::EndSeq;
+    }
+    if (!edge.offsets_m.empty()) *out << "offset" << Number(edge.offsets_m.front());
+    *out << YAML::EndMap;
   } else if (edge.offsets_m.size() == 1) {
     *out << Number(edge.offsets_m.front());
   } else {

@@ -111,7 +111,7 @@ PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, in
 double RoundedMetres(double length_mm) { return std::round(length_mm) / 1000; }
 
 // The distances from the outer markers to the edges of the sail: to luff and leech along the lines,
-// to foot and head along the luff.
+// to foot and head across them.
 ClothEdges EdgesOf(const Sail& sail, const std::vector<PlacedLine>& lines, double sticker_mm) {
   ClothEdges edges;
   for (const PlacedLine& line : lines) {
@@ -127,8 +127,10 @@ ClothEdges EdgesOf(const Sail& sail, const std::vector<PlacedLine>& lines, doubl
     }
   }
   const double head_mm = (1 - sticker_mm / sail.foot_mm) * sail.luff_mm;
-  edges.foot.offsets_m = {RoundedMetres(lines.front().luff_mm)};
-  edges.head.offsets_m = {RoundedMetres(std::max(0.0, head_mm - lines.back().luff_mm))};
+  const Eigen::Vector2d along = (sail.clew - sail.tack) / sail.foot_mm;
+  const double across = std::abs(Cross(along, (sail.head - sail.tack) / sail.luff_mm));
+  edges.foot.offsets_m = {RoundedMetres(across * lines.front().luff_mm)};
+  edges.head.offsets_m = {RoundedMetres(across * std::max(0.0, head_mm - lines.back().luff_mm))};
   return edges;
 }
 

@@ -165,6 +165,8 @@ std::vector<BadInput> Layouts() {
            edges("{luff: [0, 0, 0]}")},
           {"AnEdgeAtALineThatIsNone", call, 2, "there is no vertical line 'v1'",
            edges("{luff: {line: v1}}")},
+          {"AnEdgeOfAForeignMarker", call, 2, "edges.foot.points[1]: marker 9 is not in the part",
+           edges("{foot: {points: [0.4, 9]}}")},
           {"EdgesWithoutLines", call, 2, "edges of a part without horizontal lines",
            Write("bad.yml", head + "  a: {markers: [0, 1], edges: {luff: 0.1}}\n")}};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -200,6 +201,7 @@ class Corrector {
                                     [](const MarkerLine& line) { return line.marker_ids.empty(); }),
                      lines->end());
       }
+      RemoveLostEdges(&part);
       if (HaveSameNames(part.horizontal, given_.parts[i].horizontal)) continue;
       for (ClothEdge* edge : {&part.edges.luff, &part.edges.leech}) {
         if (edge->offsets_m.size() < 2) continue;
@@ -208,6 +210,32 @@ class Corrector {
             "{}: the edge with a distance for each line is left out, because the lines changed",
             part.name));
       }
+    }
+  }
+
+  // An edge whose line or points the part has no longer, or whose line is no outer one any more.
+  void RemoveLostEdges(LayoutPart* part) {
+    const std::set<int> ids = MarkerIds(*part);
+    const auto is_in = [](const std::vector<MarkerLine>& lines, const std::string& name) {
+      return std::any_of(lines.begin(), lines.end(),
+                         [&](const MarkerLine& line) { return line.name == name; });
+    };
+    const auto is_outer = [&](const std::string& name) {
+      return !part->horizontal.empty() &&
+             (part->horizontal.front().name == name || part->horizontal.back().name == name);
+    };
+    ClothEdges& edges = part->edges;
+    for (ClothEdge* edge : {&edges.luff, &edges.leech, &edges.foot, &edges.head}) {
+      const bool is_side = edge == &edges.luff || edge == &edges.leech;
+      const bool lost_line = !edge->line.empty() &&
+                             !(is_side ? is_in(part->vertical, edge->line) : is_outer(edge->line));
+      const bool lost_point =
+          std::any_of(edge->points.begin(), edge->points.end(),
+                      [&](const CornerId& point) { return ids.count(point.marker_id) == 0; });
+      if (!lost_line && !lost_point) continue;
+      *edge = {};
+      proposal_.notes.push_back(fmt::format("{}: an edge is left out, because its {} changed",
+                                            part->name, lost_line ? "line" : "points"));
     }
   }
 

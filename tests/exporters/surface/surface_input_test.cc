@@ -58,6 +58,54 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   EXPECT_EQ(one.luff_note, "");
 }
 
+// Markers 1 to 3 and 11 to 13 on lines, 21 and 23 below them and 31 at the luff.
+TEST(SurfaceInput, TakesPointsAndLinesAlongTheEdges) {
+  MarkerShape shape;
+  for (const int id : {1, 2, 3, 11, 12, 13, 21, 23, 31}) {
+    ShapeMarker marker;
+    marker.marker_id = id;
+    const Eigen::Vector3d center_m(id % 10, 0, id > 20 ? -1 : 2.0 * (id / 10));
+    marker.x_in_shape_m.fill(center_m);
+    marker.x_in_shape_m[4] = center_m - Eigen::Vector3d(0.1, 0, 0.1);
+    shape.markers.push_back(marker);
+  }
+  LayoutPart part;
+  part.horizontal = {{"h1", {1, 2, 3}}, {"h2", {11, 12, 13}}};
+  part.marker_ids = {21, 23, 31, 99};
+  part.edges.luff.points = {{11, 4}, {1, 4}, {99, 0}};
+  part.edges.luff.offsets_m = {0.03};
+  part.edges.foot.points = {{23, 0}, {21, 0}};
+  part.edges.head.line = "h2";
+  part.edges.head.offsets_m = {0.25};
+  const SurfaceInput input = CollectSurfaceInput(shape, part, Eigen::Vector3d::UnitZ());
+  ASSERT_EQ(input.edges.luff.size(), 2u);  // from foot to head; 99 is missing
+  EXPECT_NEAR((input.edges.luff[0] - Eigen::Vector3d(0.9, 0, -0.1)).norm(), 0, 1e-12);
+  EXPECT_EQ(input.edges.beyond_luff_m, 0.03);
+  EXPECT_FALSE(input.lines[0].luff_offset_m);
+  ASSERT_EQ(input.edges.foot.size(), 2u);  // from luff to leech
+  EXPECT_EQ(input.edges.foot[0], Eigen::Vector3d(1, 0, -1));
+  EXPECT_EQ(input.edges.beyond_foot_m, 0.0);
+  EXPECT_FALSE(input.foot_offset_m);
+  EXPECT_EQ(input.head_offset_m, 0.25);
+  EXPECT_TRUE(input.edges.head.empty());
+  // Markers on the edge belong to it; where the cloth goes on, they show the surface as well.
+  ASSERT_EQ(input.markers.size(), 1u);
+  EXPECT_EQ(input.markers[0].marker_id, 31);
+  part.edges.foot.offsets_m = {0.05};
+  EXPECT_EQ(CollectSurfaceInput(shape, part, Eigen::Vector3d::UnitZ()).markers.size(), 3u);
+  // What gives no edge is said.
+  part.edges.foot.points = {{23, 0}, {99, 0}};
+  part.edges.head.line = "h1";
+  const SurfaceInput lacking = CollectSurfaceInput(shape, part, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(lacking.edges.foot.empty());
+  EXPECT_EQ(lacking.foot_note,
+            "foot: 1 of the markers of its points are whole, 2 needed; the surface ends at the "
+            "outer markers");
+  EXPECT_FALSE(lacking.head_offset_m);
+  EXPECT_EQ(lacking.head_note,
+            "head: its line h1 is at the other end of the sail; the surface ends at h2");
+}
+
 // Two lines of three markers; the vertical line, if there is one, runs from `vertical`'s first.
 LayoutPart TwoLines(const std::vector<int>& vertical) {
   LayoutPart part;

@@ -221,6 +221,95 @@ TEST(SurfaceTrim, EndsAtGivenPoints) {
   for (const Eigen::Vector3d& x : options.edges.leech) EXPECT_LT(DistanceFrom(leech, x), 0.001);
 }
 
+// Markers along the luff that are on none of the lines, some of them beyond these.
+TEST(SurfaceTrim, FollowsTheMarkersOfAnEdgeBetweenTheLines) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    MarkedSail marked = MarkOut(DrawSail(&random), kNearlyExact_m, &random);
+    SetOffsets(&marked);
+    std::uniform_real_distribution<double> shift(-0.3, 0.3);
+    constexpr int kLast = 8;
+    for (int k = 0; k <= kLast; ++k) {
+      const double t = k == 0 ? -0.02 : k == kLast ? 1.02 : (k + shift(random)) / kLast;
+      marked.input.edges.leech.push_back(marked.sail({1, marked.Height(t)}));
+    }
+    for (SurfaceLine& line : marked.input.lines) line.leech_offset_m.reset();
+    const FittedSurface fitted = FitSurface(marked.input);
+    const Points leech = FoundEdge(fitted, 1);
+    const Points& given = marked.input.edges.leech;
+    for (std::size_t k = 1; k + 1 < given.size(); ++k) {
+      EXPECT_LT(DistanceFrom(leech, given[k]), 0.001);
+    }
+    EXPECT_LT(EdgeError(marked, fitted, 1), 0.003);
+    ExpectTrueArea(marked, fitted);
+  }
+}
+
+TEST(SurfaceTrim, EndsBeyondTheMarkersAlongAnEdge) {
+  constexpr double kBeyond_m = 0.04;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    MarkedSail marked = BentMainsail(kNearlyExact_m, seed);
+    for (SurfaceLine& line : marked.input.lines) line.luff_offset_m.reset();
+    for (int k = 0; k <= 10; ++k) {
+      const double v = marked.Height(k / 10.0);
+      double u = 0.0;
+      for (int step = 0; step < 20; ++step) {
+        u += (kBeyond_m - LengthAlong(marked.sail, v, 0, u)) / LengthAlong(marked.sail, v, 0, 1);
+      }
+      marked.input.edges.luff.push_back(marked.sail({u, v}));
+    }
+    marked.input.edges.beyond_luff_m = kBeyond_m;
+    EXPECT_LT(EdgeError(marked, FitSurface(marked.input)), 0.003);
+  }
+}
+
+// The foot and the head of a sail are round, and the points of its layout may be a few of them.
+TEST(SurfaceTrim, EndsAtPointsOfARoundFootAndHead) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    MarkedSail marked = MarkOut(DrawSail(&random), kNearlyExact_m, &random);
+    SetOffsets(&marked);
+    const double low = marked.lines.vs.front(), high = marked.lines.vs.back();
+    const auto foot = [&](double u) { return marked.sail({u, low - 0.02 - 0.08 * u * (1 - u)}); };
+    const auto head = [&](double u) { return marked.sail({u, high + 0.02 + 0.02 * u}); };
+    for (const double u : {0.12, 0.37, 0.55, 0.86}) {
+      marked.input.edges.foot.push_back(foot(u));
+      marked.input.edges.head.push_back(head(u));
+    }
+    const FittedSurface fitted = FitSurface(marked.input);
+    const auto found = [&](double v) {
+      return MarkedSail::Sample([&](double t) { return EvaluatePoint(fitted.surface, t, v); });
+    };
+    EXPECT_LT(LargestDistanceFrom(found(0), MarkedSail::Sample(foot)), 0.01);
+    EXPECT_LT(LargestDistanceFrom(found(1), MarkedSail::Sample(head)), 0.01);
+    EXPECT_LT(LargestDistanceFrom(found(0), marked.input.edges.foot), 0.002);
+    EXPECT_LT(LargestDistanceFrom(found(1), marked.input.edges.head), 0.002);
+  }
+}
+
+// The foot runs as the lowest line does, not as the cloth above it spreads.
+TEST(SurfaceTrim, KeepsItsDistanceFromTheOuterLines) {
+  constexpr double kOffset_m = 0.15;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    MarkedSail marked = MarkOut(DrawSail(&random), kNearlyExact_m, &random);
+    SetOffsets(&marked);
+    marked.input.foot_offset_m = marked.input.head_offset_m = kOffset_m;
+    const FittedSurface fitted = FitSurface(marked.input);
+    for (const double edge : {0.0, 1.0}) {
+      const double v = edge == 0 ? marked.lines.vs.front() : marked.lines.vs.back();
+      const Points line = MarkedSail::Sample([&](double u) { return marked.sail({u, v}); });
+      for (const double u : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        EXPECT_NEAR(DistanceFrom(line, EvaluatePoint(fitted.surface, u, edge)), kOffset_m, 0.004);
+      }
+    }
+  }
+}
+
 // The spacing of the line says where its end is, 0.4 m beyond the last marker.
 TEST(SurfaceTrim, OuterMarkersMayBeMissing) {
   MarkedSail marked = BentMainsail(kNearlyExact_m, 4);

@@ -264,6 +264,53 @@ TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
   expect("top: 0.1", "top");
 }
 
+TEST(ReadLayout, ReadsLinesAndPointsAlongTheEdges) {
+  const TempDir dir;
+  const auto edges_of = [&](const std::string& edges) {
+    const std::string path = dir / "edges.yml";
+    std::ofstream(path) << "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n"
+                           "    edges: {" +
+                               edges +
+                               "}\n"
+                               "    horizontal:\n      - {name: h1, markers: [1, 2]}\n"
+                               "      - {name: h2, markers: [3, 4]}\n"
+                               "      - {name: h3, markers: [5, 6]}\n"
+                               "    vertical:\n      - {name: v1, markers: [2, 4]}\n"
+                               "    markers: [21, 22]\n";
+    return ReadLayout(path).parts[0].edges;
+  };
+  const ClothEdges edges = edges_of(
+      "luff: {line: v1, offset: 0.02}, leech: {points: [2, 4.3]}, "
+      "foot: {points: [21, 1.4, 22], offset: 0.03}, head: {line: h3}");
+  EXPECT_EQ(edges.luff.line, "v1");
+  EXPECT_THAT(edges.luff.offsets_m, ElementsAre(0.02));
+  EXPECT_THAT(edges.leech.points, ElementsAre(CornerId{2, 0}, CornerId{4, 3}));
+  EXPECT_TRUE(edges.leech.IsKnown());
+  EXPECT_THAT(edges.foot.points, ElementsAre(CornerId{21, 0}, CornerId{1, 4}, CornerId{22, 0}));
+  EXPECT_THAT(edges.foot.offsets_m, ElementsAre(0.03));
+  EXPECT_EQ(edges.head.line, "h3");
+  // A layout may list its lines from head to foot.
+  EXPECT_EQ(edges_of("foot: {line: h3}, head: {line: h1}").foot.line, "h3");
+  const auto expect = [&](const std::string& text, const std::string& error) {
+    ExpectThrows<InputError>([&] { edges_of(text); }, {"edges.yml:5: parts.sail.edges", error});
+  };
+  expect("foot: {line: h2}",
+         ".foot: 'h2' is neither the first nor the last horizontal line; expected 'h1' or "
+         "'h3', or {points: [...]}");
+  expect("foot: {line: h1}, head: {line: h1}", "foot and head are the same line 'h1'");
+  expect("foot: {line: h1, points: [21, 22]}", ".foot: one of line and points is expected");
+  expect("luff: {offset: 0.1}", ".luff: one of line and points is expected");
+  expect("luff: {points: [21, 22], offset: -1}", ".luff.offset: -1 m is out of range");
+  expect("leech: {points: [21]}", ".leech.points: one point is no edge; name two or more");
+  expect("leech: {points: [21, 7]}", ".leech.points[1]: marker 7 is not in the part");
+  expect("leech: {points: [21, 21]}", ".leech.points[1]: point 21 is named twice");
+  expect("leech: {points: [21, 2.5]}", ".leech.points[1]: '2.5' is not a point of a marker");
+  expect(
+      "head: {points: [5, 21]}",
+      ".head.points[0]: the centre of marker 5 is on the line h3, which cannot also be the edge; "
+      "name a corner of it, such as 5.4, or {line: h3}");
+}
+
 TEST(ReadLayout, WithoutPartsAnyMarkerMayHaveADistance) {
   const TempDir dir;
   const Layout layout =

@@ -23,6 +23,8 @@ Layout RichLayout() {
   ClothEdges& edges = layout.parts.front().edges;
   edges.luff.offsets_m.assign(layout.parts.front().horizontal.size(), 0.0625);
   edges.leech.line = layout.parts.front().vertical.front().name;
+  edges.leech.offsets_m = {0.015};
+  edges.foot.points = {{1, 4}, {30, 0}, {3, 3}};
   edges.head.offsets_m = {0.1};
   layout.distances = {{1, 0, 9, 0, 2.315, 0.002, false}, {1, 1, 40, 4, 1.5, 0.001, true}};
   layout.known_points = {{1, 0, {0.1, -2.0, 3.25}, 0.002, false},
@@ -61,7 +63,9 @@ TEST(LayoutText, ReadsBackAsItWas) {
   const ClothEdges &edges = layout.parts.front().edges, &read_edges = read.parts.front().edges;
   EXPECT_EQ(read_edges.luff.offsets_m, edges.luff.offsets_m);
   EXPECT_EQ(read_edges.leech.line, edges.leech.line);
-  EXPECT_FALSE(read_edges.foot.IsKnown());
+  EXPECT_EQ(read_edges.leech.offsets_m, edges.leech.offsets_m);
+  EXPECT_EQ(read_edges.foot.points, edges.foot.points);
+  EXPECT_TRUE(read_edges.foot.offsets_m.empty());
   EXPECT_EQ(read_edges.head.offsets_m, edges.head.offsets_m);
   ASSERT_TRUE(read.frame.has_value());
   EXPECT_EQ(read.frame->plane_id, 7);

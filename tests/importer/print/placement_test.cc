@@ -116,9 +116,11 @@ TEST(PlaceOnSail, ItsLayoutNamesTheEdgesOfTheSail) {
     EXPECT_NEAR(luff.x(), 0, 1);
     EXPECT_NEAR(DistanceToEdge(corners, leech), 0, 1);
   }
-  EXPECT_NEAR(1000 * edges.foot.offsets_m[0], placement.horizontal.front().luff_mm, 1);
+  const double across = std::abs(Cross(foot, (corners[2] - corners[0]).normalized()));
+  EXPECT_NEAR(1000 * edges.foot.offsets_m[0], across * placement.horizontal.front().luff_mm, 0.5);
   // At the head the sail is a sticker wide.
-  const double head_mm = placement.horizontal.back().luff_mm + 1000 * edges.head.offsets_m[0];
+  const double head_mm =
+      placement.horizontal.back().luff_mm + 1000 * edges.head.offsets_m[0] / across;
   EXPECT_NEAR(3000 * (1 - head_mm / 6000), kSticker_mm, 1);
   // Lines of one marker in their middle.
   options.markers_per_line = 1;

@@ -216,6 +216,24 @@ TEST(LayoutCorrection, DistancesOfAnEdgeGoWhenOneLineIsAddedAndAnotherRemoved) {
   EXPECT_THAT(correction.notes, Contains(HasSubstr("the edge with a distance for each line")));
 }
 
+// A layout whose edge names what is no longer there could not be read.
+TEST(LayoutCorrection, AnEdgeGoesWithItsLineOrItsPoints) {
+  Layout given = SampleLayout();
+  LayoutPart& sail = given.parts[0];
+  sail.edges.head.line = sail.horizontal.back().name;
+  sail.edges.leech.points = {{sail.horizontal[0].marker_ids.back(), 3},
+                             {sail.horizontal[1].marker_ids.back(), 3}};
+  const LayoutProposal kept = CorrectLayout(SampleSail(), given);
+  EXPECT_EQ(kept.layout.parts[0].edges.head.line, sail.edges.head.line);
+  EXPECT_EQ(kept.layout.parts[0].edges.leech.points.size(), 2u);
+  sail.horizontal.push_back({"x", {20, 50}});  // markers of other lines
+  sail.edges.head.line = "x";
+  const LayoutProposal correction = CorrectLayout(SampleSail(), given);
+  EXPECT_FALSE(correction.layout.parts[0].edges.head.IsKnown());
+  EXPECT_THAT(correction.notes, Contains(HasSubstr("an edge is left out, because its line")));
+  EXPECT_TRUE(correction.layout.parts[0].edges.leech.IsKnown());
+}
+
 TEST(LayoutCorrection, AMarkerOnTwoLinesIsNamedAndTakenOffTheWrongOne) {
   Layout given = SampleLayout();
   std::vector<int>& line = given.parts[0].horizontal[0].marker_ids;
