@@ -95,7 +95,7 @@ house_folder(exporters/scale PUBLIC
 house_folder(exporters/surface PUBLIC
   surface surface_attempt surface_csv surface_input)
 house_folder(exporters/sail PUBLIC
-  sail_metrics sail_shape section section_writer)
+  cloth_places sail_metrics sail_shape section section_writer)
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC

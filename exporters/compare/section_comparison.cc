@@ -8,6 +8,7 @@
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/datum/known_points.h"
+#include "exporters/sail/cloth_places.h"
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/geometry/units.h"
@@ -29,11 +30,13 @@ SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame
   }
   if (uncertain.covariance.IsEmpty()) {
     MoveShape(frame_from_shape, nullptr, &shape);
+    MoveCentersToCloth(layout, frame.up_in_frame, &shape);
     return ComputeSections(shape, frame, layout, nullptr, options);
   }
   const PointCovariance covariance =
       RotateCovariance(frame_from_shape.rotation, uncertain.covariance);
   MoveShape(frame_from_shape, &covariance, &shape);
+  MoveCentersToCloth(layout, frame.up_in_frame, &shape);
   return ComputeSections(shape, frame, layout, &covariance, options);
 }
 

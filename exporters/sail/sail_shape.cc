@@ -9,6 +9,7 @@
 
 #include "exporters/formats/cad_writer.h"
 #include "exporters/formats/mesh_writer.h"
+#include "exporters/sail/cloth_places.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
 #include "exporters/sail/surface_sigma.h"
@@ -133,7 +134,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
                       const PointCovariance* covariance, const SailOptions& options) {
   options.Check();
   SailShape sail;
-  sail.sections = ComputeSections(shape, frame, layout, covariance, options.sections);
+  MarkerShape on_cloth = shape;
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty()) continue;
     if (static_cast<int>(sail.surfaces.size()) == kMaxSurfaces) {
@@ -143,10 +144,12 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
     }
     const auto fit = [&] {
       sail.surfaces.push_back(MakeSailSurface(shape, frame, layout, part, covariance, options));
+      MoveCentersToCloth(sail.surfaces.back().fit, &on_cloth);
       return sail.surfaces.back().fit.notes;
     };
     TryFitSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);
   }
+  sail.sections = ComputeSections(on_cloth, frame, layout, covariance, options.sections);
   return sail;
 }
 

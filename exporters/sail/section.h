@@ -2,7 +2,8 @@
 // line of the layout and at given heights. README.md of this folder defines them with a drawing.
 //
 // The section of a line is a smoothing spline through its marker centres (section_spline.h) from
-// the first to the last whole marker; the markers do not reach the edges of the cloth. The section
+// the first to the last whole marker; the markers do not reach the edges of the cloth. Centres that
+// are means of corners lie inside the bend of the cloth: cloth_places.h moves them. The section
 // at a height is the cut at right angles to up through interpolating splines that run across the
 // lines at equal fractions of their lengths.
 //

@@ -106,12 +106,13 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
   std::vector<SurfaceResidual> residuals;
   for (std::size_t k = 0; k < markers.size(); ++k) {
     residuals.push_back({markers[k].marker_id, "", feet[k].u, feet[k].v, feet[k].distance_m,
-                         feet[k].beyond_edge_m, false});
+                         feet[k].beyond_edge_m, false, 0.0});
     const auto observation = used.find(markers[k].marker_id);
     if (observation == used.end()) continue;
     residuals.back().line = observations[observation->second].line;
     residuals.back().distance_m = NormalResidual(surface, observations, terms[observation->second]);
     residuals.back().is_used = true;
+    residuals.back().bend_m = residuals.back().distance_m - feet[k].distance_m;
   }
   return residuals;
 }

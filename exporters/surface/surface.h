@@ -63,6 +63,9 @@ struct SurfaceResidual {
   double distance_m = 0.0;
   double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
   bool is_used = false;        // false for markers outside the edge, which the fit ignores
+  // From the mean of the corners to the cloth in the middle of a used marker, along the normal. Not
+  // 0 where the cloth bends, and free of the marker's distance from the surface.
+  double bend_m = 0.0;
 };
 
 struct SurfaceEdgePoint {
