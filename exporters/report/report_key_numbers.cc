@@ -81,7 +81,7 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
           fmt::format("difference from the printed area; good up to a mean of {:g} %",
                       kGoodAreaError_percent),
           LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent),
-          "measure some prints and check marker_length of the layout and the calibration"};
+          "check marker_length by the scale on the printed sheets, and check the calibration"};
 }
 
 KeyNumber SizeNumber(const MarkerShape& shape) {

@@ -114,7 +114,7 @@ void EmitLayout(const Layout& layout, YAML::Emitter* out) {
   *out << YAML::BeginMap;
   *out << "dictionary" << layout.dictionary;
   *out << "marker_length" << Number(layout.marker_length_m)
-       << YAML::Comment("m, outer edge of the black square");
+       << YAML::Comment("m, outer edge of the black square, without the spread of ink");
   if (layout.drawn_length_m) {
     *out << "drawn_length" << Number(*layout.drawn_length_m)
          << YAML::Comment("m, the same on the sheets; stays if marker_length is corrected");

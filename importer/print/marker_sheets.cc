@@ -56,7 +56,7 @@ void WarnOfMeasuredLength(const PrintOptions& options) {
   if (length_mm < kLeast_mm || std::abs(length_mm - std::round(length_mm)) < 1e-6) return;
   LogWarning(
       "--layout_path: the squares are drawn with the {:.5g} mm of key 'marker_length'. If you "
-      "measured that on sheets, add the length that those were drawn with, such as "
+      "corrected it by the scale on sheets, add the length that those were drawn with, such as "
       "'drawn_length: {:g}' (m), to {}, or the printer changes the size a second time",
       length_mm, std::round(length_mm) / 1000, options.layout_path);
 }
@@ -77,11 +77,10 @@ void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, O
 }
 
 std::string LayoutComment(const PrintOptions& options, const PrintPlan& plan) {
-  std::string comment =
+  std::string comment = fmt::format(
       "Written by velamap marker_generator, to start from: correct what is different on your "
-      "object.\nIf the printed scale is not as long as it says, change marker_length in the same "
-      "proportion\n(do not measure the black squares: ink makes them larger).\nLeave drawn_length "
-      "as it is: sheets that you print later follow from both.";
+      "object.\n{}\nLeave drawn_length as it is: sheets that you print later follow from both.",
+      kLengthFromScale);
   if (plan.board) {
     comment +=
         fmt::format("\n{} columns, {} rows, {} {}.", plan.board->num_columns, plan.board->num_rows,

@@ -11,6 +11,12 @@
 
 namespace velamap {
 
+// What the comments of a layout say about marker_length. Ink spreads over the edges of a square,
+// and the corners that velamap finds are those of the drawing.
+inline constexpr char kLengthFromScale[] =
+    "If the printed scale is not as long as it says, change marker_length in the same proportion\n"
+    "(do not measure the black squares: ink makes them larger).";
+
 struct PrintReport {
   std::string dictionary;
   int num_codes = 0;

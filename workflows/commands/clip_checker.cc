@@ -9,6 +9,7 @@
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
 #include "importer/layout/layout_writer.h"
+#include "importer/print/marker_sheets.h"
 #include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
@@ -175,7 +176,9 @@ void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptio
   }
   std::string comment = std::string(kProposedLayout) + "\n";
   if (!options.check.layout) {
-    comment += "marker_length: NOT KNOWN, set to 0.1 m; measure a black square and correct it.\n";
+    comment += fmt::format(
+        "marker_length: NOT KNOWN, set to 0.1 m; give the length that the sheets name.\n{}\n",
+        kLengthFromScale);
     comment +=
         "dictionary: found by trying, the smallest of its family with all ids that the clip shows; "
         "NOT SURE whether the print has more: then name the dictionary of the print.\n";
