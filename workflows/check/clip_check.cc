@@ -12,6 +12,7 @@
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/clip_ids.h"
 #include "workflows/check/clip_light.h"
+#include "workflows/check/clip_parts.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"
 #include "workflows/check/marked_frame.h"
@@ -42,32 +43,14 @@ Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, Clip
   return layout;
 }
 
-// Frames in order with enough markers, as long as no frame between them has too few.
-std::vector<ClipStretch> FindGoodStretches(const std::vector<DatabaseImage>& images,
-                                           double step_s) {
-  std::vector<const FrameDetections*> frames;
-  for (const DatabaseImage& image : images) {
-    const FrameDetections& frame = image.detections;
-    if (frame.time_s && frame.markers.size() >= kFewMarkers) frames.push_back(&frame);
-  }
-  std::sort(frames.begin(), frames.end(),
-            [](const auto* a, const auto* b) { return *a->time_s < *b->time_s; });
-  std::vector<ClipStretch> stretches;
-  for (const FrameDetections* frame : frames) {
-    const double time_s = *frame->time_s;
-    if (!stretches.empty() && time_s - stretches.back().end_s < 1.5 * step_s) {
-      stretches.back().end_s = time_s;
-    } else {
-      stretches.push_back({time_s, time_s});
-    }
-  }
-  return stretches;
-}
-
-double SecondsPerFrame(const ClipFrames& clip) {
+FrameTimes TimesOf(const ClipFrames& clip, const VideoOptions& video, int num_frames) {
   const Frame &first = clip.frames.front(), &last = clip.frames.back();
-  if (!first.time_s || !last.time_s || first.frame_number == last.frame_number) return 0.0;
-  return (*last.time_s - *first.time_s) / (*last.frame_number - *first.frame_number);
+  FrameTimes times{video.first_frame, video.frame_step, num_frames, first.time_s.value_or(0.0)};
+  if (first.time_s && last.time_s && first.frame_number != last.frame_number) {
+    times.seconds_per_frame =
+        (*last.time_s - *first.time_s) / (*last.frame_number - *first.frame_number);
+  }
+  return times;
 }
 
 class Checker {
@@ -139,17 +122,29 @@ class Checker {
     for (const DatabaseImage& image : images) {
       by_name[image.detections.image_name] = &image.detections;
     }
-    CollectFacts(clip, video.frame_step, layout, images, by_name);
+    CollectFacts(clip, layout, images, by_name);
     FindFaults(clip, by_name, layout, importer.detection);
     if (options_.proposes_layout) Propose(importer.database_path, layout);
-    if (!MeasuresPrecision()) return;
+    if (MeasuresPrecision()) Reconstruct(importer.database_path, layout);
+    FindParts(clip, video, layout, images);
+  }
+
+  void Reconstruct(const std::string& database_path, const Layout& layout) {
     LogInfo("reconstructing the frames for the precision");
     try {
-      check_.facts.precision =
-          MeasurePrecision(importer.database_path, layout, options_.num_threads);
+      check_.facts.precision = MeasurePrecision(database_path, layout, options_.num_threads);
     } catch (const DataError& error) {
       check_.facts.no_precision_because = error.what();
     }
+  }
+
+  void FindParts(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
+                 const std::vector<DatabaseImage>& images) {
+    ClipFacts& facts = check_.facts;
+    if (!clip.is_video) return;
+    const int num_frames = facts.num_frames_read + facts.num_frames_damaged;
+    facts.parts = FindClipParts(images, TimesOf(clip, video, num_frames), layout,
+                                facts.precision ? &*facts.precision : nullptr);
   }
 
   // Of the prints, for a layout; of the pictures, where the clip hardly shows any marker.
@@ -187,7 +182,7 @@ class Checker {
     }
   }
 
-  void CollectFacts(const ClipFrames& clip, int frame_step, const Layout& layout,
+  void CollectFacts(const ClipFrames& clip, const Layout& layout,
                     const std::vector<DatabaseImage>& images, const DetectionsByName& by_name) {
     ClipFacts& facts = check_.facts;
     CollectIds(images, layout, &facts);
@@ -201,7 +196,6 @@ class Checker {
     }
     facts.num_frames_with_few_markers = facts.num_frames_read - num_with_enough;
     facts.side_px = ComputeStatistics(std::move(sides_px));
-    facts.good_stretches = FindGoodStretches(images, frame_step * SecondsPerFrame(clip));
     MeasureLights(clip, by_name, &facts);
     const FrameDetections* best = nullptr;
     const Frame* best_frame = nullptr;

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "importer/base/statistics.h"
 #include "importer/camera/calibration_writer.h"
@@ -15,9 +18,13 @@
 
 namespace velamap {
 
-// A stretch of a video in which frames hold enough markers.
-struct ClipStretch {
+// A part of a video, from a frame that was looked at to another one (clip_parts.h).
+struct ClipPart {
   double begin_s = 0.0, end_s = 0.0;
+  int first_frame = 0, last_frame = 0;
+  std::string lacks{};  // why it does not do for a reconstruction of its own; empty if it does
+  int num_markers = 0;  // that at least two of its frames show
+  std::optional<double> parallax_deg{};  // as in ClipPrecision; nothing without a precision
 };
 
 // A reconstruction from these frames alone.
@@ -32,6 +39,9 @@ struct ClipPrecision {
   std::vector<std::string> markers_left_out;  // id and reason of those that contradict the layout
   CalibrationEvidence calibration;
   std::vector<EstimatedCamera> found_cameras;  // without a calibration
+  // By image name: the direction from the middle of the markers to the camera.
+  std::map<std::string, Eigen::Vector3d> directions{};
+  std::set<std::string> contradicting_images{};  // names of those in which much does not fit
 };
 
 struct ClipFacts {
@@ -73,7 +83,7 @@ struct ClipFacts {
   // of their pictures are.
   double poor_light_share = 0.0;
   std::vector<int> ids_in_poor_light;
-  std::vector<ClipStretch> good_stretches;  // videos
+  std::vector<ClipPart> parts;  // videos
   std::optional<ClipPrecision> precision;
   std::string no_precision_because;
   bool has_camera = false;

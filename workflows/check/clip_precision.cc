@@ -1,7 +1,6 @@
 #include "workflows/check/clip_precision.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
@@ -23,23 +23,33 @@
 namespace velamap {
 namespace {
 
-// Largest angle between the directions from the middle of all points to two cameras.
-double Parallax(const Model& model) {
+// By image name: the unit vector from the middle of all points to the camera.
+std::map<std::string, Eigen::Vector3d> DirectionsToCameras(const Model& model) {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   for (const auto& [point3D_id, point] : model.points3D) middle_m += point.x_in_world;
   middle_m /= static_cast<double>(model.points3D.size());
-  std::vector<Eigen::Vector3d> directions;
+  std::map<std::string, Eigen::Vector3d> directions;
   for (const ModelImage& image : model.images) {
-    directions.push_back((Inverse(image.cam_from_world).translation - middle_m).normalized());
+    directions[image.name] = (Inverse(image.cam_from_world).translation - middle_m).normalized();
   }
-  double least_cosine = 1.0;
-  for (const Eigen::Vector3d& a : directions) {
-    for (const Eigen::Vector3d& b : directions) least_cosine = std::min(least_cosine, a.dot(b));
-  }
-  return std::acos(std::max(-1.0, least_cosine));
+  return directions;
+}
+
+double Parallax_deg(const std::map<std::string, Eigen::Vector3d>& directions) {
+  std::vector<Eigen::Vector3d> all;
+  for (const auto& [name, direction] : directions) all.push_back(direction);
+  return kDegPerRad * LargestAngle(all);
 }
 
 }  // namespace
+
+double LargestAngle(const std::vector<Eigen::Vector3d>& directions) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& a : directions) {
+    for (const Eigen::Vector3d& b : directions) largest = std::max(largest, AngleBetween(a, b));
+  }
+  return largest;
+}
 
 ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
                                int num_threads) {
@@ -71,7 +81,8 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.num_markers = static_cast<int>(sigmas_mm.size());
   precision.marker_sigma_mm = MedianSigma(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
-  precision.parallax_deg = kDegPerRad * Parallax(model);
+  precision.directions = DirectionsToCameras(model);
+  precision.parallax_deg = Parallax_deg(precision.directions);
   precision.steadiness = JudgeSteadiness(model);
   precision.steadiness.step =
       ConfirmFocalStep(adjustment_options, layout, corner_errors, &seed, precision.steadiness.step);
@@ -80,6 +91,9 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.warnings = summary.warnings;
   if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
     precision.warnings.push_back(std::move(doubt));
+  }
+  for (const RegisteredFrame& frame : registration.frames) {
+    if (frame.num_contradicting > 0) precision.contradicting_images.insert(frame.image_name);
   }
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (!marker.is_false) continue;

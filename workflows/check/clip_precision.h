@@ -3,11 +3,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "importer/layout/layout.h"
 #include "workflows/check/clip_facts.h"
 
 namespace velamap {
+
+// The largest angle between two of the directions, rad; 0 for fewer than two.
+double LargestAngle(const std::vector<Eigen::Vector3d>& directions);
 
 // Registers and adjusts the images of a database, and finds the cameras before if it has no
 // calibration. Throws DataError where the images give no shape or no cameras.

@@ -94,12 +94,25 @@ void Validate(ClipCheckerCommandOptions* options) {
   check.proposes_layout = !options->proposed_layout_path.empty();
 }
 
-std::string StretchesText(const std::vector<ClipStretch>& stretches) {
-  std::vector<std::string> texts;
-  for (const ClipStretch& stretch : stretches) {
-    texts.push_back(fmt::format("{:.1f} to {:.1f}", stretch.begin_s, stretch.end_s));
+std::string PartText(const ClipPart& part) {
+  const std::string text = fmt::format("{:.1f} to {:.1f} (frames {} to {}", part.begin_s,
+                                       part.end_s, part.first_frame, part.last_frame);
+  if (!part.lacks.empty()) return fmt::format("{}: {})", text, part.lacks);
+  return fmt::format("{}: {}{} markers)", text,
+                     part.parallax_deg
+                         ? fmt::format("{:.0f} degrees around the object, ", *part.parallax_deg)
+                         : "",
+                     part.num_markers);
+}
+
+void PrintParts(const std::vector<ClipPart>& parts, std::ostream& out) {
+  std::vector<std::string> good, poor;
+  for (const ClipPart& part : parts) {
+    (part.lacks.empty() ? good : poor).push_back(PartText(part));
   }
-  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+  out << fmt::format("good_parts_s: {}\n",
+                     good.empty() ? "none" : fmt::to_string(fmt::join(good, ", ")));
+  if (!poor.empty()) out << fmt::format("poor_parts_s: {}\n", fmt::join(poor, ", "));
 }
 
 void PrintLight(const ClipFacts& facts, std::ostream& out) {
@@ -159,10 +172,8 @@ void Print(const ClipFacts& facts, std::ostream& out) {
                        facts.side_px.min, facts.side_px.max);
   }
   PrintLight(facts, out);
-  if (facts.is_video) {
-    out << fmt::format("good_parts_s: {}\n", StretchesText(facts.good_stretches));
-  }
   if (facts.precision) PrintPrecision(*facts.precision, out);
+  if (facts.is_video) PrintParts(facts.parts, out);
 }
 
 // The dictionary file of the layout is named relative to the new file.

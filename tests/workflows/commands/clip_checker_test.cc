@@ -53,9 +53,12 @@ TEST_F(ClipCheckerTest, TheDictionaryHasTheIdsOfAllFrames) {
   const ProgramRun run = RunVelamap(
       {"clip_checker", "--image_path", kSampleSail + "clip.mp4", "--proposed_layout_path", layout});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("dictionary: DICT_4X4_250 (found by trying: "),
-                             HasSubstr("; no other finds any, beyond chance)"),
-                             HasSubstr("markers_seen: 102\nids: 0-101\n")));
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("dictionary: DICT_4X4_250 (found by trying: "),
+                    HasSubstr("; no other finds any, beyond chance)"),
+                    HasSubstr("markers_seen: 102\nids: 0-101\n"),
+                    HasSubstr("\ngood_parts_s: 0.0 to 4.9 (frames 0 to 148: 102 markers)\n"),
+                    Not(HasSubstr("poor_parts_s: "))));
   const Layout proposed = ReadLayout(layout);
   EXPECT_EQ(proposed.dictionary, "DICT_4X4_250");
   EXPECT_EQ(MarkerIds(proposed).size(), 102u);
