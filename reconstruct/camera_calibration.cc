@@ -1,6 +1,7 @@
 #include "reconstruct/camera_calibration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -116,6 +117,38 @@ void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layou
   if (step) throw DataError("the camera cannot be calibrated: " + DescribeStep(*step));
 }
 
+// Throws DataError if the pictures that are not in the model have another focal length, by their
+// markers alone: more than five sigmas and more than the focus of a lens changes it. With a zoom of
+// 1.3 and more, pictures of one setting fit no pose among those of the other.
+void CheckLeftOut(const MarkerAdjustmentOptions& options, const std::vector<DatabaseImage>& upright,
+                  const Camera& guess, const Model& model) {
+  constexpr std::size_t kMinImages = 3;
+  constexpr double kMinSigmas = 5.0, kMinChange = 0.05;
+  std::vector<DatabaseImage> before, after;
+  FocalStep step;
+  for (const DatabaseImage& image : upright) {
+    const bool is_used = model.FindImage(image.image_id) != nullptr;
+    (is_used ? before : after).push_back(image);
+    (is_used ? step.image_ids_before : step.image_ids_after).insert(image.image_id);
+  }
+  if (after.size() < kMinImages) return;
+  const auto find = [&](const std::vector<DatabaseImage>& images) {
+    return FindFocalLength(CameraModel::kSimpleRadial, guess.width_px, guess.height_px,
+                           SquaresOf(images, options), options.num_threads);
+  };
+  const FocalEvidence first = find(before), second = find(after);
+  step.before_px = MeanFocalLength(first.camera);
+  step.after_px = MeanFocalLength(second.camera);
+  step.first_image_after = after.front().detections.image_name;
+  const double change = std::abs(std::log(step.after_px / step.before_px));
+  const double sigma = std::hypot(first.log_sigma, second.log_sigma);
+  LogDebug("{} pictures left out: focal length {:.0f} px instead of {:.0f} px, {:.1f} sigmas",
+           after.size(), step.after_px, step.before_px, change / sigma);
+  if (change > kMinChange && change > kMinSigmas * sigma) {
+    throw DataError("the camera cannot be calibrated: " + DescribeStep(step));
+  }
+}
+
 void CollectResiduals(const Model& model, CameraCalibration* calibration) {
   std::map<ImageId, std::vector<double>> errors_px;
   for (const ObservationError& error : ComputeReprojectionErrors(model)) {
@@ -167,8 +200,10 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   const Camera& guess = guesses.begin()->second;
   CheckMovement(images, guess);
   const MarkerAdjustmentOptions adjustment = BoardOptions(options.num_threads);
+  constexpr double kRepeated = 5e-4;  // of the larger side
   const std::vector<BoardView> views =
-      DescribeBoardViews(Upright(images, guesses), adjustment.corner_sigma_px);
+      WithoutRepeatedViews(DescribeBoardViews(Upright(images, guesses), adjustment.corner_sigma_px),
+                           kRepeated * std::max(guess.width_px, guess.height_px));
   const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
   CameraCalibration calibration;
   calibration.num_images = static_cast<int>(views.size());
@@ -192,6 +227,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
       AdjustForCalibration(adjustment, layout, corner_errors, seed, options.camera_model);
   calibration.warnings = std::move(adjusted.summary.warnings);
   CheckSteadiness(adjustment, layout, corner_errors, seed, adjusted.model, &calibration.warnings);
+  CheckLeftOut(adjustment, Upright(used, guesses), guess, adjusted.model);
   calibration.camera = adjusted.summary.cameras.begin()->second;
   calibration.scores = std::move(adjusted.scores);
   calibration.num_outliers = static_cast<int>(adjusted.summary.removed.size());

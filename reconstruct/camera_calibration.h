@@ -44,7 +44,7 @@ struct CalibrationView {
 struct CameraCalibration {
   EstimatedCamera camera;
   std::vector<CameraModelScore> scores;
-  int num_images = 0;                  // images with at least two markers
+  int num_images = 0;                  // images with at least two markers, without repeated ones
   std::vector<CalibrationView> views;  // the selected ones
   std::vector<CalibrationResidual> residuals;
   int num_outliers = 0;

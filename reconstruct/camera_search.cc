@@ -13,7 +13,6 @@
 #include "importer/camera/camera_projection.h"
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
-#include "reconstruct/camera/focal_evidence.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 
@@ -27,24 +26,6 @@ constexpr double kMinFocal = 0.25, kMaxFocal = 8.0;  // times the larger side
 constexpr double kVagueLogSigma = 0.1;
 
 int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }
-
-std::vector<SquareView> ViewsOf(CameraId camera_id, const std::vector<DatabaseImage>& images,
-                                const MarkerAdjustmentOptions& adjustment) {
-  std::vector<SquareView> views;
-  for (const DatabaseImage& image : images) {
-    if (image.camera_id != camera_id) continue;
-    for (const MarkerDetection& marker : image.detections.markers) {
-      if (marker.is_fallback) continue;
-      double sum = 0.0;
-      for (const double sigma_px : marker.corner_sigma_px) {
-        sum += sigma_px > 0 ? sigma_px : adjustment.corner_sigma_px;
-      }
-      views.push_back({marker.corners_in_image_px,
-                       std::hypot(sum / kNumCorners, adjustment.corner_sigma_floor_px)});
-    }
-  }
-  return views;
-}
 
 // An initial guess of all cameras.
 struct Start {
@@ -94,7 +75,11 @@ Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const C
   const std::map<CameraId, CameraId> upright = UprightCameras(guesses);
   std::map<CameraId, std::vector<SquareView>> views;
   for (const auto& [camera_id, guess] : guesses) {
-    for (SquareView view : ViewsOf(camera_id, images, adjustment)) {
+    std::vector<DatabaseImage> of_camera;
+    for (const DatabaseImage& image : images) {
+      if (image.camera_id == camera_id) of_camera.push_back(image);
+    }
+    for (SquareView view : SquaresOf(of_camera, adjustment)) {
       if (upright.at(camera_id) != camera_id) {
         for (Eigen::Vector2d& corner_px : view.corners_px) {
           corner_px = TurnInImage(guess, -1, corner_px);
@@ -258,6 +243,23 @@ class CameraSearch {
 };
 
 }  // namespace
+
+std::vector<SquareView> SquaresOf(const std::vector<DatabaseImage>& images,
+                                  const MarkerAdjustmentOptions& adjustment) {
+  std::vector<SquareView> views;
+  for (const DatabaseImage& image : images) {
+    for (const MarkerDetection& marker : image.detections.markers) {
+      if (marker.is_fallback) continue;
+      double sum = 0.0;
+      for (const double sigma_px : marker.corner_sigma_px) {
+        sum += sigma_px > 0 ? sigma_px : adjustment.corner_sigma_px;
+      }
+      views.push_back({marker.corners_in_image_px,
+                       std::hypot(sum / kNumCorners, adjustment.corner_sigma_floor_px)});
+    }
+  }
+  return views;
+}
 
 std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const std::map<CameraId, Camera>& guesses,

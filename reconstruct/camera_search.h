@@ -21,11 +21,16 @@
 #include "importer/camera/camera.h"
 #include "importer/database/colmap_database.h"
 #include "importer/layout/layout.h"
+#include "reconstruct/camera/focal_evidence.h"
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/registration/registration_options.h"
 
 namespace velamap {
+
+// The squares of all markers of the images whose corners were fitted.
+std::vector<SquareView> SquaresOf(const std::vector<DatabaseImage>& images,
+                                  const MarkerAdjustmentOptions& adjustment);
 
 // Returns the cameras by id; images that are stored rotated have a rotated camera of their own.
 // `guesses` are the cameras of the database and are returned unchanged for fewer than two images.

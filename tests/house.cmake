@@ -55,7 +55,8 @@ house_folder(reconstruct/camera PUBLIC
 house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
-  corner_motions dictionary_doubt frame_order registration registration_options)
+  corner_motions dictionary_doubt frame_order registration registration_options
+  repeated_frames)
 house_folder(reconstruct/evidence PUBLIC
   layout_evidence marker_rows unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC

@@ -61,6 +61,21 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
   return adjustment;
 }
 
+// Removes the images of which two groups of focal lengths do not tell.
+void RemoveUndecidedImages(const FocalStep& step, Model* model) {
+  if (step.IsInTime()) return;
+  const auto undecided = std::stable_partition(
+      model->images.begin(), model->images.end(), [&](const ModelImage& image) {
+        return step.image_ids_before.count(image.image_id) > 0 ||
+               step.image_ids_after.count(image.image_id) > 0;
+      });
+  for (auto image = undecided; image != model->images.end(); ++image) {
+    RemoveFromTracks(*image, model);
+  }
+  model->images.erase(undecided, model->images.end());
+  RemoveShortTracks(model, 2);
+}
+
 // Throws DataError if the wanted model fails and another one is far better, which explains why.
 void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraModel wanted,
                             const DataError& failure) {
@@ -136,10 +151,11 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
   }
   const CameraId second_id = model.cameras.rbegin()->first + 1;
   model.cameras[second_id] = model.cameras.at(step.camera_id);
+  RemoveUndecidedImages(step, &model);
   for (ModelImage& image : model.images) {
-    if (image.camera_id == step.camera_id && !NaturalLess(image.name, step.first_image_after)) {
-      image.camera_id = second_id;
-    }
+    const bool is_after = step.IsInTime() ? !NaturalLess(image.name, step.first_image_after)
+                                          : step.image_ids_after.count(image.image_id) > 0;
+    if (image.camera_id == step.camera_id && is_after) image.camera_id = second_id;
   }
   try {
     const CameraAdjustment adjustment = AdjustCameras(options, layout, corner_errors, model);

@@ -52,9 +52,10 @@ std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);
 
-// Measures a step of the focal length at `step` by an adjustment in which the images from there on
-// have their own camera; `model` is the model before its adjustment. Returns nothing if the focal
-// lengths agree to 1 % or to ten sigmas, or if one part alone cannot be adjusted.
+// Measures a step of the focal length at `step` by an adjustment in which the images from there on,
+// or those of the second group, have their own camera; `model` is the model before its adjustment.
+// Returns nothing if the focal lengths agree to 1 % or to ten sigmas, or if one part alone cannot
+// be adjusted.
 std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model model, FocalStep step);

@@ -120,6 +120,26 @@ std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& imag
   return views;
 }
 
+std::vector<BoardView> WithoutRepeatedViews(const std::vector<BoardView>& views,
+                                            double tolerance_px) {
+  const auto repeats = [&](const BoardView& before, const BoardView& view) {
+    return std::equal(before.corners_in_image_px.begin(), before.corners_in_image_px.end(),
+                      view.corners_in_image_px.begin(), view.corners_in_image_px.end(),
+                      [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+                        return (a - b).norm() <= tolerance_px;
+                      });
+  };
+  std::vector<BoardView> kept;
+  for (const BoardView& view : views) {
+    if (kept.empty() || !repeats(kept.back(), view)) {
+      kept.push_back(view);
+    } else if (view.corner_sigma_px < kept.back().corner_sigma_px) {
+      kept.back() = view;
+    }
+  }
+  return kept;
+}
+
 std::vector<std::size_t> ChooseBoardViews(const std::vector<BoardView>& views,
                                           const PictureGrid& grid, int max_num_views) {
   std::vector<std::size_t> chosen;

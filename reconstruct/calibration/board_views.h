@@ -53,6 +53,12 @@ struct BoardView {
 std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& images,
                                           double unknown_sigma_px);
 
+// Leaves out views that repeat the one before: in which no corner is further than `tolerance_px`
+// from its place there. The sharpest of them stays. Many copies of one picture, as where a video
+// stands still, would make its errors seem to be those of all others.
+std::vector<BoardView> WithoutRepeatedViews(const std::vector<BoardView>& views,
+                                            double tolerance_px);
+
 // Greedily takes the view that adds most to the sum, over the cells of `grid` and the tilts, of
 // log(1 + corners seen there so far). A corner counts (median of corner_sigma_px over the views /
 // corner_sigma_px of its view)^2, but at most 4. Returns the indices of at most `max_num_views`

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -124,6 +125,23 @@ Level LevelOf(const std::vector<ImageIntrinsics>& values, std::size_t begin, std
   return level;
 }
 
+// By how much the scatter of two groups exceeds the sigmas of their images; at least 1.
+double ExcessScatter(const Level& first, const Level& second, std::size_t num_values) {
+  return std::max(
+      1.0, (first.squares + second.squares) / std::max(1.0, static_cast<double>(num_values) - 2));
+}
+
+// How far the values before index `i` are from the others, in scatters of a single value.
+double Separation(const std::vector<ImageIntrinsics>& values, std::size_t i) {
+  const Level first = LevelOf(values, 0, i), second = LevelOf(values, i, values.size());
+  // The mean variance of a group, from the sigma of its mean.
+  const double variance =
+      0.5 * (static_cast<double>(i) * first.sigma * first.sigma +
+             static_cast<double>(values.size() - i) * second.sigma * second.sigma);
+  return std::abs(second.mean - first.mean) /
+         std::sqrt(variance * ExcessScatter(first, second, values.size()));
+}
+
 // The step that best divides the images into those before one image and those from it on. If the
 // scatter on both sides is larger than the sigmas, it counts instead of them.
 std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageIntrinsics>& values) {
@@ -131,10 +149,9 @@ std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageInt
   std::optional<FocalStep> largest;
   for (std::size_t i = kMinImages; i + kMinImages <= values.size(); ++i) {
     const Level first = LevelOf(values, 0, i), second = LevelOf(values, i, values.size());
-    const double scatter = std::max(1.0, (first.squares + second.squares) /
-                                             std::max(1.0, static_cast<double>(values.size()) - 2));
     const double sigmas = std::abs(second.mean - first.mean) /
-                          (std::sqrt(scatter) * std::hypot(first.sigma, second.sigma));
+                          (std::sqrt(ExcessScatter(first, second, values.size())) *
+                           std::hypot(first.sigma, second.sigma));
     if (largest && sigmas <= largest->sigmas) continue;
     const ModelImage& image = *model.FindImage(values[i].image_id);
     const double focal_px = MeanFocalLength(model.cameras.at(image.camera_id));
@@ -142,6 +159,49 @@ std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageInt
                         focal_px * std::exp(second.mean), sigmas};
   }
   return largest;
+}
+
+// The two groups into which the images fall by their focal length, if they do and if the images of
+// one do not all follow those of the other. `values` is in the order of time.
+std::optional<FocalStep> FindGroups(const Model& model,
+                                    const std::vector<ImageIntrinsics>& values) {
+  constexpr std::size_t kMinImages = 3;
+  constexpr double kMinSeparation = 5.0;
+  std::vector<ImageIntrinsics> sorted = values;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.log_focal < b.log_focal; });
+  std::size_t best = 0;
+  double largest = kMinSeparation;
+  for (std::size_t i = kMinImages; i + kMinImages <= sorted.size(); ++i) {
+    const double separation = Separation(sorted, i);
+    if (separation < largest) continue;
+    largest = separation;
+    best = i;
+  }
+  if (best == 0) return std::nullopt;
+  FocalStep step;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    (i < best ? step.image_ids_before : step.image_ids_after).insert(sorted[i].image_id);
+  }
+  const Level low = LevelOf(sorted, 0, best), high = LevelOf(sorted, best, sorted.size());
+  double before = low.mean, after = high.mean;
+  if (step.image_ids_after.count(values.front().image_id) > 0) {
+    std::swap(step.image_ids_before, step.image_ids_after);
+    std::swap(before, after);
+  }
+  const auto is_after = [&](const ImageIntrinsics& value) {
+    return step.image_ids_after.count(value.image_id) > 0;
+  };
+  const auto first = std::find_if(values.begin(), values.end(), is_after);
+  if (std::all_of(first, values.end(), is_after)) return std::nullopt;
+  const ModelImage& image = *model.FindImage(first->image_id);
+  const double focal_px = MeanFocalLength(model.cameras.at(image.camera_id));
+  step.first_image_after = image.name;
+  step.camera_id = image.camera_id;
+  step.before_px = focal_px * std::exp(before);
+  step.after_px = focal_px * std::exp(after);
+  step.sigmas = largest;
+  return step;
 }
 
 std::optional<PrincipalPointWander> FindWander(const Model& model,
@@ -190,7 +250,9 @@ SteadinessVerdict JudgeSteadiness(const Model& model) {
   std::sort(values.begin(), values.end(), [&](const ImageIntrinsics& a, const ImageIntrinsics& b) {
     return NaturalLess(names.at(a.image_id), names.at(b.image_id));
   });
-  return {FindStep(model, values), FindWander(model, values)};
+  std::optional<FocalStep> step = FindGroups(model, values);
+  if (!step) step = FindStep(model, values);
+  return {std::move(step), FindWander(model, values)};
 }
 
 SteadinessVerdict WithoutDoubtfulStep(SteadinessVerdict verdict) {
@@ -219,6 +281,14 @@ bool PrincipalPointWander::SpoilsShape() const {
 }
 
 std::string DescribeStep(const FocalStep& step) {
+  if (!step.IsInTime()) {
+    return fmt::format(
+        "{} of the pictures, {} the first of them, have a focal length of {:.0f} px, and {} have "
+        "{:.0f} px: the lens was zoomed, or the pictures come from two cameras; use the pictures "
+        "of one setting only",
+        step.image_ids_after.size(), step.first_image_after, step.after_px,
+        step.image_ids_before.size(), step.before_px);
+  }
   return fmt::format(
       "the focal length changes from {:.0f} to {:.0f} px about {}: the lens was zoomed, or the "
       "pictures come from two cameras; use the pictures of one setting only",

@@ -19,12 +19,46 @@
 #include "reconstruct/map/map_verdict.h"
 #include "reconstruct/registration/dictionary_doubt.h"
 #include "reconstruct/registration/frame_order.h"
+#include "reconstruct/registration/repeated_frames.h"
 
 namespace velamap {
 namespace {
 
 // Frames on which maps grow from several starts.
 constexpr int kMaxStartFrames = 32;
+
+// The frames of a video without those that repeat the one before. Many copies of one frame would
+// outvote all others, whose errors are not those of the copies.
+std::vector<int> FramesThatDiffer(GlobalRegistration* global) {
+  const std::vector<bool> is_repeated = FindRepeatedFrames(global->images);
+  std::vector<int> differ;
+  for (std::size_t i = 0; i < is_repeated.size(); ++i) {
+    if (is_repeated[i]) {
+      global->reason_of_image[i] = std::string(kNotChosen) + "repeats the frame before";
+    } else {
+      differ.push_back(static_cast<int>(i));
+    }
+  }
+  if (differ.size() < 2) {
+    throw DataError(
+        fmt::format("all {} frames with markers show the same picture; film again, and move the "
+                    "camera around the object",
+                    is_repeated.size()));
+  }
+  return differ;
+}
+
+// Of these frames, by index.
+std::vector<int> ChooseCandidates(const GlobalRegistration& global, const std::vector<int>& idxs,
+                                  std::size_t max_num_candidates) {
+  std::vector<const DatabaseImage*> images;
+  for (const int idx : idxs) images.push_back(global.images[static_cast<std::size_t>(idx)]);
+  std::vector<int> candidates;
+  for (const int place : ChooseCandidateFrames(images, max_num_candidates)) {
+    candidates.push_back(idxs[static_cast<std::size_t>(place)]);
+  }
+  return candidates;
+}
 
 // Registers twice as many frames of a video as are kept, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
@@ -33,17 +67,20 @@ void ChooseFrames(GlobalRegistration* global) {
   std::iota(chosen.begin(), chosen.end(), 0);
   const std::size_t max_num_candidates =
       kCandidatesPerFrame * static_cast<std::size_t>(global->options.global.max_num_frames);
-  if (global->is_video && chosen.size() > max_num_candidates) {
-    chosen = ChooseCandidateFrames(global->images, max_num_candidates);
+  global->reason_of_image.assign(
+      global->images.size(),
+      std::string(kNotChosen) + "frames next to it show more markers or are sharper");
+  if (global->is_video) {
+    chosen = FramesThatDiffer(global);
+    if (chosen.size() > max_num_candidates) {
+      chosen = ChooseCandidates(*global, chosen, max_num_candidates);
+    }
     const auto place = std::lower_bound(chosen.begin(), chosen.end(), global->central_image_idx);
     if (global->central_image_idx >= 0 &&
         (place == chosen.end() || *place != global->central_image_idx)) {
       chosen.insert(place, global->central_image_idx);
     }
   }
-  global->reason_of_image.assign(
-      global->images.size(),
-      std::string(kNotChosen) + "frames next to it show more markers or are sharper");
   for (const int idx : chosen) global->reason_of_image[static_cast<std::size_t>(idx)].clear();
   global->image_idx_of_frame = std::move(chosen);
 }

@@ -4,9 +4,10 @@
 // 2 % holds near 1. This keeps a map of few views well-posed; the bundle adjustment finds the bend
 // of the cloth later.
 //
-// 1. Frames. All photographs take part. A video is divided into twice max_num_frames stretches of
-//    equal length, and the frame with the most and sharpest markers of each is registered. In the
-//    end, the max_num_frames frames stay that add most to the information on all marker centres.
+// 1. Frames. All photographs take part. A video, without frames that repeat the one before, is
+//    divided into twice max_num_frames stretches of equal length, and the frame with the most and
+//    sharpest markers of each is registered. In the end, the max_num_frames frames stay that add
+//    most to the information on all marker centres.
 // 2. Starts. A map starts from two frames with many common markers and a parallax near 20 degrees.
 //    Both reliefs of the pair are adjusted, and the better one is kept.
 // 3. Growth. The frames that see most of the map join it by resection (map_resection.h), from the

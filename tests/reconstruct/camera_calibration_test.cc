@@ -201,17 +201,52 @@ TEST(CameraCalibration, PicturesThatAreAlikeAreRefused) {
   ExpectThrows<DataError>([&] { Calibrate(images); }, {"no marker is in two of the pictures"});
 }
 
-TEST(CameraCalibration, AZoomInTheMiddleIsRefused) {
-  std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), kTruth, 5);
+void ZoomPicture(double zoom, DatabaseImage* image) {
   const Eigen::Vector2d center(646, 355);
-  for (std::size_t i = images.size() / 2; i < images.size(); ++i) {
-    for (MarkerDetection& marker : images[i].detections.markers) {
-      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
-        x_px = center + 1.05 * (x_px - center);
-      }
+  for (MarkerDetection& marker : image->detections.markers) {
+    for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+      x_px = center + zoom * (x_px - center);
     }
   }
-  ExpectThrows<DataError>([&] { Calibrate(images); }, {"the lens was zoomed"});
+}
+
+TEST(CameraCalibration, AZoomInTheMiddleIsRefused) {
+  for (const double zoom : {1.05, 1.5}) {
+    std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), kTruth, 5, 20);
+    for (std::size_t i = 10; i < images.size(); ++i) ZoomPicture(zoom, &images[i]);
+    ExpectThrows<DataError>([&] { Calibrate(images); }, {"the lens was zoomed"});
+  }
+}
+
+// With a zoom of 1.5, the pictures of one setting fit no pose among those of the other.
+TEST(CameraCalibration, TwoZoomsThatAlternateAreRefused) {
+  for (const double zoom : {1.1, 1.5}) {
+    std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), kTruth, 5, 20);
+    for (std::size_t i = 1; i < images.size(); i += 2) ZoomPicture(zoom, &images[i]);
+    ExpectThrows<DataError>([&] { Calibrate(images); },
+                            {"of the pictures, image_101.png the first of them, have a focal"});
+  }
+}
+
+// The first picture of a clip 20 times, as where a video stands still: with the noise of one
+// picture, and not of 20.
+TEST(CameraCalibration, RepeatedFramesCountOnce) {
+  const std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), kTruth, 6, 20);
+  const auto frozen = [&](double zoom) {
+    std::vector<DatabaseImage> clip(20, images.front());
+    clip.insert(clip.end(), images.begin(), images.end());
+    for (std::size_t i = 0; i < clip.size(); ++i) {
+      clip[i].image_id = static_cast<ImageId>(i + 1);
+      clip[i].detections.image_name = "frame_" + std::to_string(100 + i) + ".png";
+      if (i >= 30) ZoomPicture(zoom, &clip[i]);
+    }
+    return clip;
+  };
+  const CameraCalibration found = Calibrate(frozen(1.0));
+  EXPECT_EQ(found.UsedViews().size(), 20u);
+  EXPECT_NEAR(found.camera.camera.params[0], kTruth.params[0], 4 * found.camera.sigmas[0]);
+  EXPECT_LT(found.camera.sigmas[0], 0.005 * kTruth.params[0]);
+  ExpectThrows<DataError>([&] { Calibrate(frozen(1.05)); }, {"about frame_130.png"});
 }
 
 // Half of the pictures are taken with the camera turned; they show the same places of the lens.

@@ -214,8 +214,14 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene) {
 }
 
 void ZoomFrom(std::size_t first_frame_idx, double zoom, SyntheticScene* scene) {
+  ZoomWhere([=](std::size_t frame_idx) { return frame_idx >= first_frame_idx; }, zoom, scene);
+}
+
+void ZoomWhere(const std::function<bool(std::size_t frame_idx)>& is_zoomed, double zoom,
+               SyntheticScene* scene) {
   const Eigen::Vector2d middle_px(0.5 * scene->camera.width_px, 0.5 * scene->camera.height_px);
-  for (std::size_t i = first_frame_idx; i < scene->frames.size(); ++i) {
+  for (std::size_t i = 0; i < scene->frames.size(); ++i) {
+    if (!is_zoomed(i)) continue;
     for (MarkerDetection& marker : scene->frames[i].markers) {
       for (Eigen::Vector2d& corner_px : marker.corners_in_image_px) {
         corner_px = middle_px + zoom * (corner_px - middle_px);

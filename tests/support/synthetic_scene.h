@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -62,5 +63,9 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene);
 
 // Enlarges the pictures about their middle from this frame on, as a lens that zooms does.
 void ZoomFrom(std::size_t first_frame_idx, double zoom, SyntheticScene* scene);
+
+// The same for any frames, such as every other one.
+void ZoomWhere(const std::function<bool(std::size_t frame_idx)>& is_zoomed, double zoom,
+               SyntheticScene* scene);
 
 }  // namespace velamap

@@ -1,6 +1,7 @@
 #include "reconstruct/camera/camera_steadiness.h"
 
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -61,6 +62,39 @@ TEST(CameraSteadiness, AZoomIsFoundWhereItBegins) {
   EXPECT_NEAR(verdict.step->after_px / verdict.step->before_px, 1.06, 0.01);
   EXPECT_THAT(DescribeStep(*verdict.step),
               HasSubstr("about frame_000012.jpg: the lens was zoomed"));
+}
+
+void Zoom(double zoom, Camera* camera) {
+  camera->params[0] *= zoom;
+  camera->params[1] *= zoom;
+}
+
+TEST(CameraSteadiness, TwoLensesThatAlternateAreFound) {
+  const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
+    if (frame_idx % 2 == 1) Zoom(1.06, camera);
+  }));
+  ASSERT_TRUE(verdict.step);
+  EXPECT_FALSE(verdict.step->IsInTime());
+  EXPECT_TRUE(verdict.step->IsCertain());
+  EXPECT_NEAR(verdict.step->after_px / verdict.step->before_px, 1.06, 0.01);
+  EXPECT_EQ(verdict.step->image_ids_before.size(), 10u);
+  EXPECT_THAT(DescribeStep(*verdict.step),
+              HasSubstr("10 of the pictures, frame_000001.jpg the first of them, have a focal"));
+}
+
+// Any scatter falls into two groups, but not into groups that are far apart.
+TEST(CameraSteadiness, AFocusThatBreathesIsNoSecondLens) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double amplitude : {0.005, 0.02}) {
+    const auto slow = JudgeSteadiness(SceneWith([=](int frame_idx, Camera* camera) {
+      Zoom(1 + amplitude * std::sin(0.9 * frame_idx), camera);
+    }));
+    EXPECT_TRUE(!slow.step || slow.step->IsInTime()) << amplitude;
+    const auto random = JudgeSteadiness(
+        SceneWith([&](int, Camera* camera) { Zoom(1 + amplitude * uniform(generator), camera); }));
+    EXPECT_TRUE(!random.step || random.step->IsInTime()) << amplitude;
+  }
 }
 
 TEST(CameraSteadiness, AStabilizedClipIsRecognized) {

@@ -10,8 +10,9 @@ namespace velamap {
 namespace {
 
 // A clip whose markers have moved together by `shifts_px`, with the noise of their corners.
-double ShareOfRepeated(const std::vector<double>& shifts_px, std::mt19937* random) {
-  std::normal_distribution<double> noise_px(0.0, 0.01);
+double ShareOfRepeated(const std::vector<double>& shifts_px, std::mt19937* random,
+                       double noise = 0.01, double sigma_px = 0.0) {
+  std::normal_distribution<double> noise_px(0.0, noise);
   std::vector<DatabaseImage> clip(shifts_px.size());
   std::vector<const DatabaseImage*> frames;
   for (std::size_t i = 0; i < clip.size(); ++i) {
@@ -21,6 +22,7 @@ double ShareOfRepeated(const std::vector<double>& shifts_px, std::mt19937* rando
       for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
         x_px = Eigen::Vector2d(shifts_px[i] + noise_px(*random), noise_px(*random));
       }
+      marker.corner_sigma_px.fill(sigma_px);
       clip[i].detections.markers.push_back(marker);
     }
     frames.push_back(&clip[i]);
@@ -42,6 +44,15 @@ TEST(FindRepeatedFrames, FindsAllOfASteadilyMovingClip) {
 TEST(FindRepeatedFrames, ACameraAtRestRepeatsNone) {
   std::mt19937 random(8);
   EXPECT_EQ(ShareOfRepeated(std::vector<double>(200, 0.0), &random), 0.0);
+}
+
+// One picture again and again, as the compression of a video leaves it.
+TEST(FindRepeatedFrames, AVideoAtRestRepeatsAllFrames) {
+  std::mt19937 random(10);
+  const std::vector<double> still(100, 0.0);
+  constexpr double kSigmaPx = 0.05;
+  EXPECT_NEAR(ShareOfRepeated(still, &random, 0.004, kSigmaPx), 0.99, 1e-9);
+  EXPECT_EQ(ShareOfRepeated(still, &random, kSigmaPx, kSigmaPx), 0.0);
 }
 
 // All markers turn back at the same time: the worst case, because a frame on either side of that

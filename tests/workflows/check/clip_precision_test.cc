@@ -3,14 +3,14 @@
 #include <gmock/gmock.h>
 
 #include "importer/database/colmap_database.h"
+#include "importer/video/frame_source.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
 
-// A sail, filmed with a lens that is zoomed in the middle of the clip.
-SyntheticScene ZoomedSail(double zoom, int num_frames = 32) {
+SyntheticScene FilmedSail(int num_frames = 32) {
   SyntheticSceneOptions options;
   options.num_rows = 4;
   options.num_columns = 5;
@@ -20,6 +20,12 @@ SyntheticScene ZoomedSail(double zoom, int num_frames = 32) {
   SyntheticNoiseOptions noise;
   noise.corner_sigma_px = 0.1;
   AddNoise(noise, &scene);
+  return scene;
+}
+
+// Filmed with a lens that is zoomed in the middle of the clip.
+SyntheticScene ZoomedSail(double zoom, int num_frames = 32) {
+  SyntheticScene scene = FilmedSail(num_frames);
   ZoomFrom(scene.frames.size() / 2, zoom, &scene);
   return scene;
 }
@@ -77,6 +83,41 @@ TEST(ClipPrecision, AZoomShowsWithoutACalibration) {
   ASSERT_TRUE(precision.steadiness.step.has_value());
   EXPECT_NEAR(precision.steadiness.step->after_px / precision.steadiness.step->before_px, 1.08,
               0.01);
+}
+
+// Each frame agrees with one camera or the other, and no step in time divides them.
+TEST(ClipPrecision, TwoCamerasThatAlternateAreMeasured) {
+  SyntheticScene scene = FilmedSail();
+  ZoomWhere([](std::size_t i) { return i % 2 == 1; }, 1.1, &scene);
+  for (const bool is_calibrated : {true, false}) {
+    const ClipPrecision precision = PrecisionOf(scene, is_calibrated);
+    ASSERT_TRUE(precision.steadiness.step.has_value()) << is_calibrated;
+    EXPECT_FALSE(precision.steadiness.step->IsInTime());
+    EXPECT_NEAR(precision.steadiness.step->after_px / precision.steadiness.step->before_px, 1.1,
+                0.005);
+    EXPECT_TRUE(precision.steadiness.step->SpoilsShape());
+  }
+}
+
+// Copies of one frame, whose noise is the same, are no evidence against the frames after them.
+TEST(ClipPrecision, AZoomBehindRepeatedFramesIsFound) {
+  for (const double zoom : {1.0, 1.05}) {
+    SyntheticScene scene = ZoomedSail(zoom);
+    const FrameDetections first = scene.frames.front();
+    scene.frames.insert(scene.frames.begin(), 40, first);
+    for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+      FrameDetections& frame = scene.frames[i];
+      frame.frame_number = static_cast<int>(i);
+      frame.time_s = static_cast<double>(i) / 30;
+      frame.image_name = NameOfVideoFrame(static_cast<int>(i));
+    }
+    const ClipPrecision precision = PrecisionOf(scene);
+    EXPECT_EQ(precision.num_images, 32);
+    ASSERT_EQ(precision.steadiness.step.has_value(), zoom > 1);
+    if (zoom == 1) continue;
+    EXPECT_NEAR(precision.steadiness.step->after_px / precision.steadiness.step->before_px, zoom,
+                0.005);
+  }
 }
 
 }  // namespace
