@@ -36,10 +36,12 @@ Layout MakeLayout(const std::string& dictionary, double marker_length_m) {
 
 void CheckMarkerLength(double length_m, const std::string& what) {
   if (!(length_m >= kMinMarkerLength_m && length_m <= kMaxMarkerLength_m)) {
+    const bool may_be_mm = length_m > kMaxMarkerLength_m && length_m < 1000 * kMaxMarkerLength_m;
     throw InputError(
         fmt::format("{}: {} m is not a marker side; give the outer edge of the black square in "
-                    "metres, {} to {}",
-                    what, length_m, kMinMarkerLength_m, kMaxMarkerLength_m));
+                    "metres, {} to {}{}",
+                    what, length_m, kMinMarkerLength_m, kMaxMarkerLength_m,
+                    may_be_mm ? fmt::format(" ({} for {} mm)", length_m / 1000, length_m) : ""));
   }
 }
 

@@ -256,13 +256,15 @@ cv::Mat ColorImage(const Frame& frame) {
 
 void CheckImagePath(const std::string& path) {
   if (path.empty() || !Exists(path)) {
-    throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
+    throw InputError(
+        fmt::format("--image_path '{}': there is no such folder or video; check the path", path));
   }
   if (IsFolder(path)) return;
   if (!IsRegularFile(path)) {
     throw InputError(path + ": a pipe or a device; give a video file, or a folder of images");
   }
-  if (FileSize(path) == 0) throw InputError(path + ": the file is empty");
+  if (FileSize(path) == 0)
+    throw InputError(path + ": the file is empty; copy it from the camera again");
   if (HasImageExtension(path)) {
     throw InputError(path + ": a single image; give the folder that holds the images");
   }

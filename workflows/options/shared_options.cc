@@ -10,6 +10,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/camera/calibration.h"
+#include "importer/layout/dictionary.h"
 
 namespace velamap {
 namespace {
@@ -27,6 +28,15 @@ Option LogLevelOption(LogLevel* level) {
     set(text == "warning" ? "warn" : text, name);
   };
   return option;
+}
+
+// The error of a name that is no dictionary does not name the layout that holds it.
+void CheckDictionary(const Layout& layout, const std::string& layout_path) {
+  try {
+    LoadDictionary(layout.dictionary);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: key 'dictionary': {}", layout_path, error.what()));
+  }
 }
 
 }  // namespace
@@ -149,7 +159,9 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
           "--layout_path: the layout file says what the markers are; leave out {}--marker_length",
           with_dictionary ? "--dictionary and " : ""));
     }
-    return ReadLayout(options.layout_path);
+    Layout layout = ReadLayout(options.layout_path);
+    if (with_dictionary) CheckDictionary(layout, options.layout_path);
+    return layout;
   }
   if (has_length && with_dictionary && options.dictionary.empty()) {
     throw InputError(

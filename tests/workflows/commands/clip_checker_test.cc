@@ -126,6 +126,25 @@ TEST_F(ClipCheckerTest, TheLayoutOfAnotherObjectIsBad) {
                              Not(HasSubstr("mirrored"))));
 }
 
+TEST_F(ClipCheckerTest, WrongLayoutsAreRefusedWithTheirLineOrKey) {
+  const std::string path = (dir_.path() / "layout.yml").string();
+  const auto expect = [&](const std::string& text, const std::string& message) {
+    WriteTextFile(path, text);
+    const ProgramRun run =
+        RunVelamap({"clip_checker", "--image_path", kCube + "images", "--layout_path", path});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("error: " + path + message));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+  };
+  expect("dictionary: DICT_4X4_55\nmarker_length: 0.1\n",
+         ": key 'dictionary': dictionary 'DICT_4X4_55': neither a file nor one of DICT_4X4_50");
+  expect("dictionary: DICT_4X4_50\nmarker_length: 100\n",
+         ":2: marker_length: 100 m is not a marker side; give the outer edge of the black square "
+         "in metres, 0.0001 to 10 (0.1 for 100 mm)");
+  expect("dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail: {markers: [1, 2, 2]}\n",
+         ":4: parts.sail.markers[2]: marker 2 is named twice in this list");
+}
+
 TEST_F(ClipCheckerTest, WhatIsNoClipIsAnInputError) {
   EXPECT_EQ(RunVelamap({"clip_checker", "--image_path", kCube + "layout.yml"}).exit_code, 2);
   EXPECT_EQ(RunVelamap({"clip_checker", "--image_path", kCube + "missing"}).exit_code, 2);
