@@ -94,9 +94,9 @@ void MarkerAdjuster::AdjustWithLooseSizes() {
 
 void MarkerAdjuster::RejectContradictingSizes() {
   const auto linearization = Linearize(solution_);
-  const MarkerSizeVerdict verdict = JudgeMarkerSizes(
-      linearization->state, linearization->covariance, InsetSigmas(solution_),
-      solution_.options.print_tolerance, PrintScaleSigma(solution_.options, solution_.weights));
+  const MarkerSizeVerdict verdict =
+      JudgeMarkerSizes(linearization->state, linearization->covariance, InsetSigmas(solution_),
+                       solution_.options, PrintScaleSigma(solution_.options, solution_.weights));
   solution_.weights.print_tolerance = verdict.print_tolerance;
   solution_.weights.markers_without_size = verdict.contradicting;
   solution_.weights.part_scale_sigma = verdict.part_scale_sigma;

@@ -21,6 +21,10 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             "corners beyond this are left out", FromTo(2, 1000)},
            {"MarkerAdjustment.print_tolerance", &options->print_tolerance, "fraction",
             "1 sigma of each printed side", FromTo(1e-6, 0.5)},
+           {"MarkerAdjustment.print_resolution", &options->print_resolution_m, "m",
+            "1 sigma of each printed side due to the printer's dots, whatever its length; added to "
+            "print_tolerance (root of the sum of squares)",
+            FromTo(0, 0.01)},
            {"MarkerAdjustment.common_print_tolerance", &options->common_print_tolerance, "fraction",
             "1 sigma of the print as a whole; widens the scale's sigma; distances with use: scale "
             "overrule it",

@@ -21,6 +21,9 @@ struct MarkerAdjustmentOptions {
   // fraction; sqrt(2) times that for the difference of a marker's diagonals. It grows where the
   // sizes of the markers scatter more.
   double print_tolerance = 1e-3;
+  // Added to it (root of the sum of squares): 1 sigma of a printed side that does not depend on its
+  // length, m. Edges snap to a printer's dots, which are 0.04 mm apart at 600 dpi.
+  double print_resolution_m = 2e-5;
   // 1 sigma of an error that all sides share (printer, shrinking paper), as a fraction. The images
   // do not contain it, so nearly all of it is added to the scale's sigma. Measured distances that
   // contradict it widen it.

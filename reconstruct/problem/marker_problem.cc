@@ -122,7 +122,8 @@ class ProblemBuilder {
     for (MarkerBlock& marker : state_.markers) {
       const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
       const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
-      const double side_sigma_m = weights_.print_tolerance * marker.length_m;
+      const double side_sigma_m =
+          std::hypot(weights_.print_tolerance * marker.length_m, options_.print_resolution_m);
       const MarkerPrior prior{marker.length_m, has_size ? side_sigma_m : 0.0,
                               std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
       auto error = std::make_unique<MarkerPriorError>(prior, marker.corners);

@@ -42,8 +42,11 @@ double MetresPerUnit(const MarkerState& state) {
 
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
                                    const std::map<int, double>& inset_sigmas,
-                                   double print_tolerance, double print_scale_sigma) {
-  const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance, inset_sigmas);
+                                   const MarkerAdjustmentOptions& options,
+                                   double print_scale_sigma) {
+  const double print_tolerance = options.print_tolerance;
+  const std::vector<MarkerSize> sizes =
+      MeasureMarkers(state, covariance, inset_sigmas, options.print_resolution_m);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
   if (sizes.size() < 3) return verdict;  // of two markers, either may be the wrong one
@@ -57,8 +60,8 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   verdict.print_tolerance = agreement.print_tolerance;
   if (agreement.scatters_more) {
     verdict.warnings.push_back(fmt::format(
-        "the sides of the markers scatter by {0:.2f} % beyond what the images explain, more than "
-        "the print tolerance of {1:.2f} %; {0:.2f} % is used",
+        "the sides of the markers scatter by {0:.2f} % beyond what the images and the dots of a "
+        "printer explain, more than the print tolerance of {1:.2f} %; {0:.2f} % is used",
         100 * verdict.print_tolerance, 100 * print_tolerance));
   }
   for (std::size_t i = 0; i < sizes.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/normal_equations.h"
 
@@ -29,11 +30,11 @@ struct MarkerSizeVerdict {
 // Compares the mean side of each marker with the median of all markers. `covariance` must come from
 // a solution in which the printed sizes had hardly any weight. `inset_sigmas` holds, by marker id,
 // the sigma of the marker's size that is due to the inset of its corners, which is the same in all
-// images; it is a fraction, and 0 for ids that it lacks. `print_tolerance` is 1 sigma of a
-// printed side, as a fraction. A marker contradicts the others if it deviates by more than four
-// sigmas of image noise, inset and print tolerance together and two thirds of the markers agree.
-// The print tolerance is raised where the markers scatter more (JudgeDeviations()). With fewer than
-// three markers nothing is judged.
+// images; it is a fraction, and 0 for ids that it lacks. The options give 1 sigma of a printed
+// side: `print_tolerance` and `print_resolution_m`. A marker contradicts the others if it deviates
+// by more than four sigmas of image noise, inset and print tolerance together and two thirds of the
+// markers agree. The print tolerance is raised where the markers scatter more (JudgeDeviations()).
+// With fewer than three markers nothing is judged.
 //
 // Parts disagree if the mean of one part (of three markers or more) differs from the mean of the
 // others by more than four sigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the
@@ -42,6 +43,7 @@ struct MarkerSizeVerdict {
 // ignored because they would change the sigma of the scale by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
                                    const std::map<int, double>& inset_sigmas,
-                                   double print_tolerance, double print_scale_sigma);
+                                   const MarkerAdjustmentOptions& options,
+                                   double print_scale_sigma);
 
 }  // namespace velamap

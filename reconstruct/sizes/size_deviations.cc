@@ -91,7 +91,8 @@ Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerI
 }
 
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
-                                       const std::map<int, double>& inset_sigmas) {
+                                       const std::map<int, double>& inset_sigmas,
+                                       double print_resolution_m) {
   std::vector<MarkerSize> sizes;
   for (std::size_t i = 0; i < state.markers.size(); ++i) {
     const MarkerBlock& marker = state.markers[i];
@@ -115,8 +116,9 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
     size.unevenness = (longest_m - shortest_m) / marker.length_m;
     const auto found = inset_sigmas.find(marker.marker_id);
     const double inset_sigma = found == inset_sigmas.end() ? 0.0 : found->second;
-    size.block_variance =
-        gradient.dot(covariance.marker_blocks[i] * gradient) + inset_sigma * inset_sigma;
+    size.block_variance = gradient.dot(covariance.marker_blocks[i] * gradient) +
+                          inset_sigma * inset_sigma +
+                          std::pow(print_resolution_m / marker.length_m, 2) / size.num_sides;
     size.by_factor.resize(covariance.factor.cols() + 1);
     size.by_factor << covariance.FactorOf(i).transpose() * gradient, inset_sigma;
     sizes.push_back(std::move(size));

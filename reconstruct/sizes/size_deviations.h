@@ -26,8 +26,9 @@ struct MarkerSize {
   std::string part;
   int num_sides = 0;
   double ratio = 0.0;
-  double unevenness = 0.0;      // longest minus shortest side, divided by the printed length
-  double block_variance = 0.0;  // of the ratio, without the errors that other markers share
+  double unevenness = 0.0;  // longest minus shortest side, divided by the printed length
+  // Of the ratio, without the errors that other markers share and without the print tolerance.
+  double block_variance = 0.0;
   // The shared errors of the ratio: the factor of the covariance times the gradient of the ratio,
   // then the sigma of the inset. The dot product of two markers' vectors is their covariance.
   Eigen::VectorXd by_factor;
@@ -38,16 +39,19 @@ using MarkerIdxs = std::vector<std::size_t>;  // indices into a vector of sizes
 // Markers without a whole side are left out. `inset_sigmas` holds, by marker id, the sigma of a
 // marker's size that is due to the inset of its corners, as a fraction. It enters twice, as an
 // error that all markers share and as an equally large independent error of each marker, because
-// blur and the background around the margin vary between markers.
+// blur and the background around the margin vary between markers. `print_resolution_m` is 1 sigma
+// of each printed side whatever its length; the variances contain it.
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
-                                       const std::map<int, double>& inset_sigmas);
+                                       const std::map<int, double>& inset_sigmas,
+                                       double print_resolution_m);
 
 std::map<std::string, MarkerIdxs> GroupByPart(const std::vector<MarkerSize>& sizes);
 
 Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs);
 
 // By marker, the deviation of the ratio from the median of a group of markers, as a fraction, and
-// its variance due to image noise. Errors that the whole group shares, such as the scale, cancel.
+// its variance due to image noise and the printer's dots. Errors that the whole group shares, such
+// as the scale, cancel.
 struct Deviations {
   explicit Deviations(std::size_t size) : values(size), variances(size) {}
   std::vector<double> values, variances;

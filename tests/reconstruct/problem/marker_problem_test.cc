@@ -67,7 +67,9 @@ TEST_F(MarkerProblemTest, ARhombusIsJudgedByTheDifferenceOfItsDiagonals) {
   options.residual_blocks = problem.prior_residuals;
   double cost = 0.0;
   ASSERT_TRUE(problem.ceres->Evaluate(options, &cost, nullptr, nullptr, nullptr));
-  const double sigma_m = std::sqrt(2.0) * weights_.print_tolerance * marker.length_m;
+  const double side_sigma_m = std::hypot(weights_.print_tolerance * marker.length_m,
+                                         MarkerAdjustmentOptions().print_resolution_m);
+  const double sigma_m = std::sqrt(2.0) * side_sigma_m;
   EXPECT_NEAR(cost / (0.5 * std::pow(difference_m / sigma_m, 2)), 1.0, 1e-3);
 }
 

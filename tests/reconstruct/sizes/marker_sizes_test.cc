@@ -146,6 +146,31 @@ TEST_F(PartSizes, OfThreeThatDisagreeTheOddOneIsNamed) {
   EXPECT_GT(summary.uncertainty.relative_scale_sigma, 0.003);
 }
 
+// The dots of a printer move the edges of small and of large markers equally far.
+class PrinterDots : public PrintedSceneTest {
+ protected:
+  std::vector<std::string> Warnings(double marker_length_m, std::uint32_t seed) {
+    constexpr double kDots_m = 2e-5;
+    SyntheticSceneOptions options;
+    options.marker_length_m = marker_length_m;
+    options.spacing_m = 2.5 * marker_length_m;
+    scene_ = WithPrintErrors(MakeSyntheticScene(options), kDots_m / marker_length_m, 0.003, seed);
+    return Adjust(seed).warnings;
+  }
+};
+
+TEST_F(PrinterDots, MakeTheSidesOfSmallMarkersScatter) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_THAT(Warnings(0.0025, seed), IsEmpty()) << seed;
+    EXPECT_THAT(Warnings(0.1, seed), IsEmpty()) << seed;
+  }
+}
+
+TEST_F(PrinterDots, DoNotExplainTheSameScatterOfLargeMarkers) {
+  scene_ = WithPrintErrors(MakeSyntheticScene({}), 0.008, 0.003, 1);
+  EXPECT_THAT(Adjust().warnings, Contains(HasSubstr("the sides of the markers scatter by 0.")));
+}
+
 // What lies behind a margin, and how blurred a marker is, differ from marker to marker.
 class OwnInsets : public PartSizes {
  protected:
