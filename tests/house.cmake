@@ -95,8 +95,10 @@ house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics round_number scale_audit scale_audit_report scale_csv)
 house_folder(exporters/surface PUBLIC
   surface surface_attempt surface_csv surface_input)
+house_folder(exporters/cloth PUBLIC
+  cloth_places surface_sigma)
 house_folder(exporters/sail PUBLIC
-  cloth_places sail_metrics sail_shape section section_writer)
+  sail_metrics sail_shape section section_writer)
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC

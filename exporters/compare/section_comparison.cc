@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "exporters/cloth/cloth_places.h"
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/datum/known_points.h"
-#include "exporters/sail/cloth_places.h"
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/geometry/units.h"

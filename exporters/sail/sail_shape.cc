@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/cloth/cloth_places.h"
+#include "exporters/cloth/surface_sigma.h"
 #include "exporters/formats/cad_writer.h"
 #include "exporters/formats/mesh_writer.h"
-#include "exporters/sail/cloth_places.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
-#include "exporters/sail/surface_sigma.h"
 #include "exporters/surface/surface_attempt.h"
 #include "exporters/surface/surface_csv.h"
 #include "exporters/surface/surface_input.h"

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "exporters/cloth/cloth_places.h"
 #include "exporters/compare/section_comparison.h"
 #include "exporters/compare/shape_deviation.h"
-#include "exporters/sail/cloth_places.h"
 #include "exporters/sail/section_writer.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"

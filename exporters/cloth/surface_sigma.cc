@@ -1,4 +1,4 @@
-#include "exporters/sail/surface_sigma.h"
+#include "exporters/cloth/surface_sigma.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "exporters/sail/cloth_places.h"
+#include "exporters/cloth/cloth_places.h"
 
 #include <algorithm>
 #include <cmath>
