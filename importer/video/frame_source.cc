@@ -180,9 +180,9 @@ class VideoFile : public FrameSource {
     if (!is_combed) return;
     constexpr char kRemedy[] =
         "make whole pictures of the fields with ffmpeg -i VIDEO -vf bwdif -crf 12 whole.mp4";
+    const int num_combed = ++num_combed_;
+    if (num_combed < MinCombed()) return;
     if (is_marked) {
-      const int num_combed = ++num_combed_;
-      if (num_combed < MinCombed()) return;
       throw InputError(fmt::format(
           "{}: the video is interlaced: {} pictures, such as {}, weave two fields of different "
           "moments; {}",

@@ -1,5 +1,6 @@
 #include "importer/video/interlacing.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace velamap {
@@ -24,15 +25,16 @@ int CountBeyond(const std::uint8_t* line, const std::uint8_t* above, const std::
 }  // namespace
 
 bool IsCombed(const cv::Mat& gray) {
-  double num_of_other_field = 0, num_of_same_field = 0, num_pixels = 0;
+  double num_of_other_field = 0, num_of_same_field = 0, num_of_columns = 0, num_pixels = 0;
   for (int y = 2; y + 2 < gray.rows; y += kRowStep) {
     const auto* line = gray.ptr(y);
     num_of_other_field += CountBeyond(line, gray.ptr(y - 1), gray.ptr(y + 1), gray.cols);
     num_of_same_field += CountBeyond(line, gray.ptr(y - 2), gray.ptr(y + 2), gray.cols);
+    num_of_columns += CountBeyond(line + 1, line, line + 2, gray.cols - 2);
     num_pixels += gray.cols;
   }
   return num_of_other_field > kMinFieldShare * num_pixels &&
-         num_of_other_field > kMinFieldRatio * num_of_same_field;
+         num_of_other_field > kMinFieldRatio * std::max(num_of_same_field, num_of_columns);
 }
 
 }  // namespace velamap

@@ -1,5 +1,7 @@
 // Interlaced clips, which the ffmpeg program makes.
 
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -97,6 +99,26 @@ TEST(IsCombed, NoiseAndTextureAreNoCombs) {
   smooth = (smooth - 128) * 6 + 128;
   EXPECT_FALSE(IsCombed(smooth));
   EXPECT_FALSE(IsCombed(Weave(smooth, smooth)));
+}
+
+// Of a camera that interpolates its colour filter array bilinearly and sharpens.
+TEST(IsCombed, ZippersOfAColourFilterArrayAreNoCombs) {
+  for (const double slant : {0.02, 0.05, 0.1}) {
+    cv::Mat mosaic(240, 320, CV_8UC1);
+    for (int y = 0; y < mosaic.rows; ++y) {
+      for (int x = 0; x < mosaic.cols; ++x) {
+        const double u = x + slant * y, v = y - slant * x;
+        const bool is_dark = std::fmod(u + 1000, 60) < 30 && std::fmod(v + 1000, 60) < 30;
+        mosaic.at<std::uint8_t>(y, x) = is_dark ? 60 : 200;
+      }
+    }
+    cv::Mat color, gray, blurred;
+    cv::demosaicing(mosaic, color, cv::COLOR_BayerBG2BGR);
+    cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
+    cv::GaussianBlur(gray, blurred, {}, 1.0);
+    cv::addWeighted(gray, 2.2, blurred, -1.2, 0.0, gray);
+    EXPECT_FALSE(IsCombed(gray)) << slant;
+  }
 }
 
 TEST(IsCombed, MovedEdgesAreCombs) {
