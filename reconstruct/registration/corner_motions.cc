@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "reconstruct/registration/motion_field.h"
 #include "reconstruct/registration/repeated_frames.h"
 
 namespace velamap {
@@ -23,9 +23,6 @@ struct TimedFrame {
 
 // That frame and those around it, in the order of time.
 using FrameWindow = std::vector<TimedFrame>;
-
-// Velocity, then acceleration.
-using MotionVector = Eigen::Matrix<double, 4, 1>;
 
 // Weights of the values at these times, one of which is 0. The sums weighted by the columns are the
 // first and the second derivative at time 0 of the polynomial through the values.
@@ -89,51 +86,19 @@ std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_
   return MotionVector(derivatives.reshaped());
 }
 
-struct AffineField {
-  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
-  MotionVector at_center = MotionVector::Zero();
-  Eigen::Matrix<double, 4, 2> gradient = Eigen::Matrix<double, 4, 2>::Zero();
-
-  MotionVector At(const Eigen::Vector2d& x_in_image_px) const {
-    return at_center + gradient * (x_in_image_px - center_px);
+// Nothing for fewer than three markers.
+std::optional<MotionField> FitField(const FrameDetections& frame,
+                                    const std::vector<std::optional<MotionVector>>& measured) {
+  constexpr std::size_t kMinNumMarkers = 3;
+  std::vector<PlacedMotion> motions;
+  double sum_of_sides_px = 0.0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i]) continue;
+    motions.push_back({CornerMean(frame.markers[i]), *measured[i]});
+    sum_of_sides_px += QuadMeanSide(frame.markers[i].corners_in_image_px);
   }
-};
-
-// Nothing for fewer than three markers. The field does not change along an axis over which the
-// markers spread by less than half a side (RMS): there it would be extrapolated to their corners,
-// which multiplies the noise of the motions.
-std::optional<AffineField> FitField(const FrameDetections& frame,
-                                    const std::vector<std::optional<MotionVector>>& motions) {
-  constexpr int kMinNumMarkers = 3;
-  constexpr double kMinSpread = 0.5;  // of a side
-  const auto num_known = std::count_if(motions.begin(), motions.end(),
-                                       [](const auto& motion) { return motion.has_value(); });
-  if (num_known < kMinNumMarkers) return std::nullopt;
-  Eigen::MatrixX2d places(num_known, 2);
-  Eigen::MatrixX4d values(num_known, 4);
-  Eigen::Index row = 0;
-  double side_px = 0.0;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (!motions[i]) continue;
-    side_px += QuadMeanSide(frame.markers[i].corners_in_image_px) / static_cast<double>(num_known);
-    places.row(row) = CornerMean(frame.markers[i]).transpose();
-    values.row(row++) = motions[i]->transpose();
-  }
-  AffineField field;
-  field.center_px = places.colwise().mean();
-  field.at_center = values.colwise().mean();
-  places.rowwise() -= field.center_px.transpose();
-  values.rowwise() -= field.at_center.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-  axes.computeDirect(places.transpose() * places);
-  const Eigen::Matrix<double, 4, 2> sums = values.transpose() * places;
-  const double least_sum = static_cast<double>(num_known) * std::pow(kMinSpread * side_px, 2);
-  for (int i = 0; i < 2; ++i) {
-    if (!(axes.eigenvalues()[i] > least_sum)) continue;
-    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
-    field.gradient += sums * axis * axis.transpose() / axes.eigenvalues()[i];
-  }
-  return field;
+  if (motions.size() < kMinNumMarkers) return std::nullopt;
+  return MotionField(motions, sum_of_sides_px / static_cast<double>(motions.size()));
 }
 
 // Empty where the neighbouring frames show too few markers.
@@ -142,7 +107,7 @@ std::vector<CornerMotion> MotionsOf(const FrameDetections& frame, const FrameWin
   for (const MarkerDetection& marker : frame.markers) {
     measured.push_back(MeasureMotion(window, marker.marker_id));
   }
-  const std::optional<AffineField> field = FitField(frame, measured);
+  const std::optional<MotionField> field = FitField(frame, measured);
   std::vector<CornerMotion> motions;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i] && !field) return {};

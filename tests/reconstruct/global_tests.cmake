@@ -25,6 +25,7 @@ velamap_test(NAME reconstruct_global_test LABEL unit
     registration/camera_doubt_test.cc
     registration/dictionary_doubt_test.cc
     registration/corner_motions_test.cc
+    registration/motion_field_test.cc
     registration/repeated_frames_test.cc
     map/marker_rivals_test.cc
     map/scene_map.cc
