@@ -81,8 +81,8 @@ std::vector<DrawnSection> SectionsOfReferences(const std::vector<Comparison>& se
 
 ComparisonJsonValue Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
 
-// Each shape is compared with a reference of the same markers, so that the reference's number is
-// the same for all shapes only where they have the same markers.
+// Each shape is compared with the reference at its own markers, so that the reference's number is
+// not the same for all shapes: a design is cut where the markers of each shape lie on it.
 ComparisonJsonValue NumbersJson(const std::vector<Comparison>& series) {
   Json rows = Json::array();
   for (const SectionDifference& number : AllNumbers(series)) {
@@ -105,6 +105,7 @@ ComparisonJsonValue NumbersJson(const std::vector<Comparison>& series) {
                 {"unit", NumberUnit(number.number)},
                 {"values", std::move(values)}};
     if (references.size() == 1) row["reference"] = *references.begin();
+    row["reference_range"] = Json::array({*references.begin(), *references.rbegin()});
     rows.push_back(std::move(row));
   }
   return rows;

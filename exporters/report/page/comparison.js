@@ -134,13 +134,20 @@ function differenceText(value) {
     uncertain(value.difference, value.sigma, 2, signed) + (value.is_significant ? ' *' : '');
 }
 
+// The reference has its numbers at the markers of each shape.
+function referenceText([least, greatest]) {
+  const texts = [fixed(least, 2), fixed(greatest, 2)];
+  return texts[0] === texts[1] ? texts[0] : texts.join(' to ');
+}
+
 function fillNumbers(data) {
   if (data.numbers.length === 0) return;
   byId('sections').hidden = false;
   fillTable('table_sections', [
     text('Section', 'section'),
     {name: 'Number', value: row => `${row.number}, ${row.unit}`, isText: true},
-    number(data.reference, 'reference', 2),
+    {name: data.reference, value: row => row.reference_range[0],
+     text: row => referenceText(row.reference_range)},
     ...data.shapes.flatMap((shape, i) => [
       {name: shape.name, value: row => row.values[i]?.value, text: row => fixed(row.values[i]?.value, 2)},
       {name: data.shapes.length > 1 ? `${shape.name} minus ${data.reference}` : 'Difference',

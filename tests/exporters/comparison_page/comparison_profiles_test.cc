@@ -53,6 +53,8 @@ TEST(ComparisonPage, AShapeWithoutALeechIsDrawnOnTheChordItIsComparedWith) {
   };
   ASSERT_FALSE(row_of(line.name, "chord").is_null());
   EXPECT_FALSE(row_of(line.name, "chord").contains("reference"));
+  const Json range = row_of(line.name, "chord")["reference_range"];
+  EXPECT_LT(range[0].get<double>(), range[1].get<double>());
   EXPECT_TRUE(row_of("h3", "chord").contains("reference"));
   for (const Json& profile : data["profiles"]) {
     const Json &whole = profile["curves"][1], &cut = profile["curves"][2];
