@@ -106,9 +106,11 @@ double BeyondMarkers(const std::optional<double>& extension_mm,
 LineEnd MakeLineEnd(const Polyline& edge, double beyond_m, double extension_m, double missing_m,
                     const Eigen::Vector3d& last, const Eigen::Vector3d& before_last) {
   if (edge.empty()) return {missing_m + extension_m, missing_m + extension_m, std::nullopt};
-  const Eigen::Vector3d x = NearestToRay(edge, last, (last - before_last).normalized());
+  const Eigen::Vector3d direction = (last - before_last).normalized();
+  const Eigen::Vector3d x = NearestToRay(edge, last, direction);
   const double length_m = (x - last).norm();
-  if (length_m < 1e-6) return {beyond_m, beyond_m, std::nullopt};  // the marker lies on the edge
+  // The marker lies on the edge, or beyond a curve through a few points of a round one.
+  if (direction.dot(x - last) < 1e-6) return {beyond_m, beyond_m, std::nullopt};
   return {length_m + beyond_m, beyond_m, x};
 }
 

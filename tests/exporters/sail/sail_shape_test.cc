@@ -128,6 +128,33 @@ TEST(SailShape, LayoutFromHeadToFootGivesTheSameSurface) {
   EXPECT_NEAR(EdgeHeight_m(b, "foot"), -0.1, 0.02);
 }
 
+// The corners of the outer markers on all sides, 50 mm from their centres.
+TEST(SailShape, EndsAtPointsOfTheLayoutInCadToo) {
+  Sail sail = ExampleSail();
+  LayoutPart& part = sail.layout.parts[0];
+  const std::vector<int>&low = part.horizontal.front().marker_ids,
+        &high = part.horizontal.back().marker_ids;
+  for (const int id : low) part.edges.foot.points.push_back({id, 4});
+  for (const int id : high) part.edges.head.points.push_back({id, 1});
+  part.edges.head.offsets_m = {0.1};
+  for (const MarkerLine& line : part.horizontal) {
+    part.edges.luff.points.push_back({line.marker_ids.front(), 1});
+  }
+  part.edges.leech.line = "leech";
+  part.vertical.push_back({"leech", {low.back(), high.back()}});
+  part.edges.leech.offsets_m = {0.2};
+  const SailShape with_edges = Compute(sail);
+  ASSERT_EQ(with_edges.surfaces.size(), 1u);
+  const SailSurface& surface = with_edges.surfaces[0];
+  EXPECT_NEAR(EdgeHeight_m(surface, "foot"), -0.05, 0.02);
+  EXPECT_NEAR(EdgeHeight_m(surface, "head"), 4.15, 0.02);
+  const double plain_m2 = Compute(ExampleSail()).surfaces[0].area_m2;
+  EXPECT_NEAR(surface.area_m2, plain_m2 + 0.05 * 3.1 + 0.15 * 1.7 + 0.25 * 4, 0.15);
+  const TempDir dir;
+  WriteSailFiles(with_edges, sail.shape, ChooseFrame(sail.shape, sail.layout), {}, dir.path());
+  EXPECT_NEAR(ReadCadFaces(dir / "surface.step").area_m2, surface.area_m2, 1e-6);
+}
+
 TEST(SailShape, StlFilesThatAreTooCoarseAndLinesFromTheHeadAreWarnedOf) {
   Sail sail = ExampleSail();
   sail.layout.parts[0].vertical.clear();
