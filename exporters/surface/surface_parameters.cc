@@ -53,6 +53,19 @@ void CheckExtension(const SurfaceOptions& options,
                                std::floor(max_mm), size_name));
 }
 
+// Whether luff and leech are given, or offset from the lines.
+void SetKnownSides(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
+                   SurfaceParameters* parameters) {
+  const auto has = [&](std::optional<double> SurfaceLine::*offset_m) {
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const SurfaceLine& line) { return (line.*offset_m).has_value(); });
+  };
+  parameters->luff.is_known =
+      !options.edges.luff.empty() || options.luff_extension_mm || has(&SurfaceLine::luff_offset_m);
+  parameters->leech.is_known = !options.edges.leech.empty() || options.leech_extension_mm ||
+                               has(&SurfaceLine::leech_offset_m);
+}
+
 // The place of a point of an edge, by the ends of the rows beside it.
 Eigen::Vector2d PlaceBeside(const std::vector<SurfaceObservation>& ends, const Eigen::Vector3d& x) {
   double least_m = std::numeric_limits<double>::infinity();
@@ -125,14 +138,7 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
   }
   parameters.length_v_m = heights_m.back() + parameters.above_m;
 
-  const auto has = [&](std::optional<double> SurfaceLine::*offset_m) {
-    return std::any_of(lines.begin(), lines.end(),
-                       [&](const SurfaceLine& line) { return (line.*offset_m).has_value(); });
-  };
-  parameters.luff.is_known = !edges.luff.empty() || options.luff_extension_mm.has_value() ||
-                             has(&SurfaceLine::luff_offset_m);
-  parameters.leech.is_known = !edges.leech.empty() || options.leech_extension_mm.has_value() ||
-                              has(&SurfaceLine::leech_offset_m);
+  SetKnownSides(lines, options, &parameters);
   std::vector<double> all_us, line_vs;
   std::size_t max_points = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
