@@ -345,6 +345,19 @@ block_surface_curvature() {
     }'
 }
 
+# --- freeform.sh ---
+
+block_freeform() {
+  echo "| body, noise | method | error: RMS, largest | error / sigma, RMS | no surface | CPU time |"
+  echo "|---|---|---|---|---|---|"
+  table freeform.csv '
+    {
+      sigmas = cell("error_in_sigmas") == "" ? "-" : num(cell("error_in_sigmas"), 2)
+      printf "| %s, %s mm | %s | %s, %s mm | %s | %s %% | %s s |\n", cell("body"), num(cell("noise_mm"), 1),
+        cell("method"), num(cell("rms_mm"), 2), num(cell("largest_mm"), 2), sigmas,
+        num(cell("lacking_percent"), 2), num(cell("cpu_s"), 2) }'
+}
+
 # --- marker_design.sh ---
 
 # Shows the statement of the thesis on each series (section 4.1) beside the shares at each distance.
