@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include <Eigen/Core>
@@ -15,13 +16,18 @@
 
 namespace velamap {
 
-// Moves the centres of the markers of the fit to the cloth, along the normal of the surface. The
-// corners stay. `fit` is a surface through markers of the shape, in its frame.
-void MoveCentersToCloth(const FittedSurface& fit, MarkerShape* shape);
+// From the centre of each marker to the cloth, along the normal of the surface, by marker id, m.
+using ClothOffsets = std::map<int, Eigen::Vector3d>;
+
+// `fit` is a surface through markers; the offsets are in its frame.
+ClothOffsets OffsetsToCloth(const FittedSurface& fit);
 
 // The same for all parts of the layout with horizontal lines, by surfaces through their markers.
-// The centres of a part without a surface stay. `up_in_shape` as for CollectSurfaceInput().
-void MoveCentersToCloth(const Layout& layout, const std::optional<Eigen::Vector3d>& up_in_shape,
-                        MarkerShape* shape);
+// Parts whose markers determine no surface have none. `up_in_shape` as for CollectSurfaceInput().
+ClothOffsets OffsetsToCloth(const MarkerShape& shape, const Layout& layout,
+                            const std::optional<Eigen::Vector3d>& up_in_shape);
+
+// Moves the centres of the markers. The corners stay.
+void MoveCenters(const ClothOffsets& offsets_m, MarkerShape* shape);
 
 }  // namespace velamap

@@ -18,10 +18,17 @@ namespace {
 
 constexpr double kPercent = 100.0;
 
-// The sections of a shape without some of its markers.
+// The markers in the frame.
+MarkerShape InFrame(const Rigid3& frame_from_shape, MarkerShape shape) {
+  MoveShape(frame_from_shape, nullptr, &shape);
+  return shape;
+}
+
+// The sections of a shape without some of its markers. `offsets_m` are in the frame.
 SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame,
-                         const UncertainShape& uncertain, const std::set<int>& left_out_ids,
-                         const Layout& layout, const std::string& part) {
+                         const UncertainShape& uncertain, const ClothOffsets& offsets_m,
+                         const std::set<int>& left_out_ids, const Layout& layout,
+                         const std::string& part) {
   SectionOptions options;
   options.part = part;
   MarkerShape shape;
@@ -30,13 +37,13 @@ SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame
   }
   if (uncertain.covariance.IsEmpty()) {
     MoveShape(frame_from_shape, nullptr, &shape);
-    MoveCentersToCloth(layout, frame.up_in_frame, &shape);
+    MoveCenters(offsets_m, &shape);
     return ComputeSections(shape, frame, layout, nullptr, options);
   }
   const PointCovariance covariance =
       RotateCovariance(frame_from_shape.rotation, uncertain.covariance);
   MoveShape(frame_from_shape, &covariance, &shape);
-  MoveCentersToCloth(layout, frame.up_in_frame, &shape);
+  MoveCenters(offsets_m, &shape);
   return ComputeSections(shape, frame, layout, &covariance, options);
 }
 
@@ -131,10 +138,17 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
     comparison.up_in_reference = frame.frame_from_shape.rotation.conjugate() * *frame.up_in_frame;
   }
   const std::set<int> beyond = MarkersBeyondCommonEnds(shape.shape, reference.shape, layout);
+  const Rigid3 frame_from_shape = frame.frame_from_shape * alignment.reference_from_shape;
+  // The same for both, so that the noise of the bends, and markers that one of them lacks, do not
+  // count as differences.
+  ClothOffsets offsets_m =
+      OffsetsToCloth(InFrame(frame.frame_from_shape, reference.shape), layout, frame.up_in_frame);
+  offsets_m.merge(
+      OffsetsToCloth(InFrame(frame_from_shape, shape.shape), layout, frame.up_in_frame));
   comparison.of_reference =
-      CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout, wanted_part);
-  comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
-                                   shape, beyond, layout, wanted_part);
+      CutInFrame(frame.frame_from_shape, frame, reference, offsets_m, beyond, layout, wanted_part);
+  comparison.of_shape =
+      CutInFrame(frame_from_shape, frame, shape, offsets_m, beyond, layout, wanted_part);
   std::set<std::string> parts_without_twist;
   for (const Section& section : comparison.of_shape.sections) {
     const Section* other = FindSection(comparison.of_reference, section.part, section.name);

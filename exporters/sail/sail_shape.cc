@@ -144,7 +144,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
     }
     const auto fit = [&] {
       sail.surfaces.push_back(MakeSailSurface(shape, frame, layout, part, covariance, options));
-      MoveCentersToCloth(sail.surfaces.back().fit, &on_cloth);
+      MoveCenters(OffsetsToCloth(sail.surfaces.back().fit), &on_cloth);
       return sail.surfaces.back().fit.notes;
     };
     TryFitSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);

@@ -41,6 +41,7 @@ struct EdgeMembers {
   const char* name;
   std::vector<Eigen::Vector3d> SurfaceEdges::*points;
   double SurfaceEdges::*beyond_m;
+  bool SurfaceEdges::*is_seen;
   std::optional<double> SurfaceOptions::*extension_mm;
   std::string SurfaceInput::*note;
 };
@@ -52,6 +53,7 @@ bool TakePoints(const EdgeMembers& edge, const SurfaceInput& input, const Surfac
   if (!(options.edges.*edge.points).empty() || options.*edge.extension_mm) return false;
   if (!(input.*edge.note).empty()) sorted->notes.push_back(input.*edge.note);
   ends->edges.*edge.points = input.edges.*edge.points;
+  ends->edges.*edge.is_seen = input.edges.*edge.is_seen;
   if (IsWithinReach(input.edges.*edge.beyond_m, size_m, edge.name, sorted)) {
     ends->edges.*edge.beyond_m = input.edges.*edge.beyond_m;
   }
@@ -92,17 +94,18 @@ void EndHeight(const EdgeMembers& edge, const std::optional<double>& offset_m, b
 SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& options,
                            SortedInput* sorted) {
   SurfaceOptions ends = options;
-  EndSide({"luff", &SurfaceEdges::luff, &SurfaceEdges::beyond_luff_m,
+  EndSide({"luff", &SurfaceEdges::luff, &SurfaceEdges::beyond_luff_m, &SurfaceEdges::luff_is_seen,
            &SurfaceOptions::luff_extension_mm, &SurfaceInput::luff_note},
           &SurfaceLine::luff_offset_m, input, options, sorted, &ends);
-  EndSide({"leech", &SurfaceEdges::leech, &SurfaceEdges::beyond_leech_m,
-           &SurfaceOptions::leech_extension_mm, &SurfaceInput::leech_note},
-          &SurfaceLine::leech_offset_m, input, options, sorted, &ends);
-  EndHeight({"foot", &SurfaceEdges::foot, &SurfaceEdges::beyond_foot_m,
+  EndSide(
+      {"leech", &SurfaceEdges::leech, &SurfaceEdges::beyond_leech_m, &SurfaceEdges::leech_is_seen,
+       &SurfaceOptions::leech_extension_mm, &SurfaceInput::leech_note},
+      &SurfaceLine::leech_offset_m, input, options, sorted, &ends);
+  EndHeight({"foot", &SurfaceEdges::foot, &SurfaceEdges::beyond_foot_m, &SurfaceEdges::foot_is_seen,
              &SurfaceOptions::foot_extension_mm, &SurfaceInput::foot_note},
             input.foot_offset_m, input.lines.front().name == sorted->lines.front().name, input,
             options, sorted, &ends);
-  EndHeight({"head", &SurfaceEdges::head, &SurfaceEdges::beyond_head_m,
+  EndHeight({"head", &SurfaceEdges::head, &SurfaceEdges::beyond_head_m, &SurfaceEdges::head_is_seen,
              &SurfaceOptions::head_extension_mm, &SurfaceInput::head_note},
             input.head_offset_m, input.lines.back().name == sorted->lines.back().name, input,
             options, sorted, &ends);

@@ -115,9 +115,21 @@ std::vector<Eigen::Vector2d> BesideRow(const SplineSurface& surface,
   return places;
 }
 
+// Whether the end of a row shows where luff or leech are. Where these are known, foot and head need
+// not reach them. Where foot or head are close to a line, their ends would turn the edge round.
+bool ShowsSide(const SurfaceParameters& parameters, const ObservedEdge& edge,
+               const std::vector<Eigen::Vector2d>& row_ends, std::size_t row) {
+  constexpr double kNear = 0.25;  // of the mean distance of the rows
+  if (!parameters.rows[row].is_edge) return true;
+  if (edge.is_known) return false;
+  const std::size_t next = row == 0 ? 1 : row - 1;
+  const double mean =
+      (row_ends.back()[1] - row_ends.front()[1]) / static_cast<double>(row_ends.size() - 1);
+  return std::abs(row_ends[row][1] - row_ends[next][1]) > kNear * mean;
+}
+
 // The places on luff or leech, from foot to head: the ends of the rows, and the points of the edge
-// between them. `outwards` is the direction of u to the edge. Where foot or head are given and do
-// not reach the edge, their ends say nothing about it.
+// between them. `outwards` is the direction of u to the edge.
 std::vector<Eigen::Vector2d> AlongSide(const SplineSurface& surface,
                                        const SurfaceParameters& parameters,
                                        const ObservedEdge& edge,
@@ -125,7 +137,7 @@ std::vector<Eigen::Vector2d> AlongSide(const SplineSurface& surface,
                                        double outwards) {
   std::vector<Eigen::Vector2d> places;
   for (std::size_t j = 0; j < row_ends.size(); ++j) {
-    if (!edge.is_known || !parameters.rows[j].is_edge) places.push_back(row_ends[j]);
+    if (ShowsSide(parameters, edge, row_ends, j)) places.push_back(row_ends[j]);
   }
   for (std::size_t k = edge.first_idx; k < edge.first_idx + edge.num_points; ++k) {
     const Eigen::Vector2d uv = FootOfCenter(surface, parameters.observations[k]);

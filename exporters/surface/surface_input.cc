@@ -62,15 +62,20 @@ struct EdgeOfPlaces {
   const ClothEdge& in_layout;
   std::vector<Eigen::Vector3d>& points_m;
   double& beyond_m;
+  bool& is_seen;
   std::string& note;
 };
 
 std::vector<EdgeOfPlaces> EdgesOfPlaces(const LayoutPart& part, SurfaceInput* input) {
   SurfaceEdges& edges = input->edges;
-  return {{"luff", true, part.edges.luff, edges.luff, edges.beyond_luff_m, input->luff_note},
-          {"leech", true, part.edges.leech, edges.leech, edges.beyond_leech_m, input->leech_note},
-          {"foot", false, part.edges.foot, edges.foot, edges.beyond_foot_m, input->foot_note},
-          {"head", false, part.edges.head, edges.head, edges.beyond_head_m, input->head_note}};
+  return {{"luff", true, part.edges.luff, edges.luff, edges.beyond_luff_m, edges.luff_is_seen,
+           input->luff_note},
+          {"leech", true, part.edges.leech, edges.leech, edges.beyond_leech_m, edges.leech_is_seen,
+           input->leech_note},
+          {"foot", false, part.edges.foot, edges.foot, edges.beyond_foot_m, edges.foot_is_seen,
+           input->foot_note},
+          {"head", false, part.edges.head, edges.head, edges.beyond_head_m, edges.head_is_seen,
+           input->head_note}};
 }
 
 // The points along an edge that the layout names, by its vertical line or one by one.
@@ -107,7 +112,9 @@ void SetPoints(const MarkerShape& shape, const LayoutPart& part, EdgeOfPlaces ed
   edge.points_m = points_m;
   edge.beyond_m = OffsetOf(edge.in_layout, 0).value_or(0.0);
   for (const CornerId& point : named) {
+    const bool is_other = others->count(point.marker_id) > 0;
     if (point.corner == 0 && edge.beyond_m <= 0) others->erase(point.marker_id);
+    edge.is_seen = edge.is_seen || !is_other || others->count(point.marker_id) > 0;
   }
 }
 

@@ -39,6 +39,9 @@ struct SurfaceEdges {
   std::vector<Eigen::Vector3d> luff, leech, foot, head;
   // How far beyond these points the cloth ends, along it, m.
   double beyond_luff_m = 0.0, beyond_leech_m = 0.0, beyond_foot_m = 0.0, beyond_head_m = 0.0;
+  // Whether the points are those of markers through which the surface goes anyway: they say where
+  // it ends, not where it is.
+  bool luff_is_seen = false, leech_is_seen = false, foot_is_seen = false, head_is_seen = false;
 };
 
 struct SurfaceInput {

@@ -53,6 +53,13 @@ void CheckExtension(const SurfaceOptions& options,
                                std::floor(max_mm), size_name));
 }
 
+// Of a point of a row that is no marker.
+bool IsSeen(const SurfaceEdges& edges, const std::vector<SurfaceRow>& rows, std::size_t row,
+            std::size_t point) {
+  if (rows[row].is_edge) return row == 0 ? edges.foot_is_seen : edges.head_is_seen;
+  return point == 0 ? edges.luff_is_seen : edges.leech_is_seen;
+}
+
 // Whether luff and leech are given, or offset from the lines.
 void SetKnownSides(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
                    SurfaceParameters* parameters) {
@@ -84,7 +91,7 @@ Eigen::Vector2d PlaceBeside(const std::vector<SurfaceObservation>& ends, const E
   return place;
 }
 
-void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m,
+void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m, bool is_seen,
                  std::size_t ObservedRow::*end_idx, ObservedEdge* edge,
                  SurfaceParameters* parameters) {
   constexpr double kSamePlace_m = 1e-6;
@@ -100,7 +107,7 @@ void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m,
     });
     if (is_end) continue;
     const Eigen::Vector2d uv = PlaceBeside(ends, x);
-    parameters->observations.push_back({-1, "", uv[0], uv[1], {{x, uv[0], uv[1]}}});
+    parameters->observations.push_back({-1, "", uv[0], uv[1], {{x, uv[0], uv[1]}}, is_seen});
   }
   edge->num_points = parameters->observations.size() - edge->first_idx;
 }
@@ -152,7 +159,8 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
                                          is_marker ? rows[j].name : "",
                                          rows[j].us[k],
                                          v,
-                                         {{rows[j].points[k], rows[j].us[k], v}}});
+                                         {{rows[j].points[k], rows[j].us[k], v}},
+                                         !is_marker && IsSeen(edges, rows, j, k)});
       all_us.push_back(rows[j].us[k]);
     }
     line_vs.push_back(v);
@@ -171,10 +179,10 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
 }
 
 void AddEdgePoints(const SurfaceEdges& edges, SurfaceParameters* parameters) {
-  AddPointsOf(edges.luff, edges.beyond_luff_m, &ObservedRow::first_idx, &parameters->luff,
-              parameters);
-  AddPointsOf(edges.leech, edges.beyond_leech_m, &ObservedRow::last_idx, &parameters->leech,
-              parameters);
+  AddPointsOf(edges.luff, edges.beyond_luff_m, edges.luff_is_seen, &ObservedRow::first_idx,
+              &parameters->luff, parameters);
+  AddPointsOf(edges.leech, edges.beyond_leech_m, edges.leech_is_seen, &ObservedRow::last_idx,
+              &parameters->leech, parameters);
 }
 
 }  // namespace velamap

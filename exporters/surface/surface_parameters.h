@@ -21,6 +21,7 @@ struct SurfaceObservation {
   std::string line;
   double u = 0.0, v = 0.0;          // mean of those of the points
   std::vector<PlacedPoint> points;  // the corners 1 to 4 of a marker, or one point
+  bool is_seen = false;             // of a given edge whose markers the surface goes through
 
   Eigen::Vector3d Center() const;  // mean of the points, shape frame, m
 };

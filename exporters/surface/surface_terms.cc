@@ -53,8 +53,10 @@ std::vector<SurfaceTerm> PlaceTerms(const std::vector<SurfaceObservation>& obser
   std::vector<SurfaceTerm> terms;
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const SurfaceObservation& observation = observations[k];
+    constexpr double kSeenFactor = 30.0;  // a weight that decides nothing
+    const double edge_sigma_m = (observation.is_seen ? kSeenFactor : 1.0) * noise.edge_sigma_m;
     const double sigma_m =
-        observation.marker_id < 0 ? noise.edge_sigma_m : noise.sigma_m.at(observation.marker_id);
+        observation.marker_id < 0 ? edge_sigma_m : noise.sigma_m.at(observation.marker_id);
     const std::size_t n = observation.points.size();
     terms.push_back({k, std::vector<double>(n, 1.0 / n), 1.0 / (sigma_m * sigma_m)});
   }

@@ -39,7 +39,7 @@ void FitDesign(const DesignOptions& options, const MeshDistance& design,
   if (deviation.doubt) LogWarning("{}: {}", options.path, deviation.doubt->reason);
   MarkerShape of_design = MarkersOnSurface(deviation);
   MoveShape(Inverse(deviation.alignment.reference_from_shape), nullptr, &of_design);
-  MoveCentersToCloth(layout, shape.frame.up_in_frame, &of_design);
+  MoveCenters(OffsetsToCloth(of_design, layout, shape.frame.up_in_frame), &of_design);
   const SectionReport sections =
       ComputeSections(of_design, shape.frame, layout, nullptr, section_options);
   ReportDesign result{std::filesystem::path(options.path).filename().string(),

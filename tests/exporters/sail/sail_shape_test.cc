@@ -128,9 +128,33 @@ TEST(SailShape, LayoutFromHeadToFootGivesTheSameSurface) {
   EXPECT_NEAR(EdgeHeight_m(b, "foot"), -0.1, 0.02);
 }
 
+// The example's markers, which all face the same way, turned into the cloth.
+Sail SailWithMarkersInTheCloth() {
+  constexpr double kHalf_m = 0.05;
+  Sail sail = ExampleSail();
+  for (const MarkerLine& line : sail.layout.parts[0].horizontal) {
+    const std::vector<int>& ids = line.marker_ids;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const int before = ids[i > 0 ? i - 1 : 0], after = ids[std::min(i + 1, ids.size() - 1)];
+      const Eigen::Vector3d right = (*FindWholeMarker(sail.shape, after)->x_in_shape_m[0] -
+                                     *FindWholeMarker(sail.shape, before)->x_in_shape_m[0])
+                                        .normalized();
+      for (ShapeMarker& marker : sail.shape.markers) {
+        if (marker.marker_id != ids[i]) continue;
+        for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+          const double x = corner == 1 || corner == 4 ? -1 : 1, z = corner <= 2 ? 1 : -1;
+          marker.x_in_shape_m[corner] =
+              *marker.x_in_shape_m[0] + kHalf_m * (x * right + z * Eigen::Vector3d::UnitZ());
+        }
+      }
+    }
+  }
+  return sail;
+}
+
 // The corners of the outer markers on all sides, 50 mm from their centres.
 TEST(SailShape, EndsAtPointsOfTheLayoutInCadToo) {
-  Sail sail = ExampleSail();
+  Sail sail = SailWithMarkersInTheCloth();
   LayoutPart& part = sail.layout.parts[0];
   const std::vector<int>&low = part.horizontal.front().marker_ids,
         &high = part.horizontal.back().marker_ids;
@@ -144,12 +168,12 @@ TEST(SailShape, EndsAtPointsOfTheLayoutInCadToo) {
   part.vertical.push_back({"leech", {low.back(), high.back()}});
   part.edges.leech.offsets_m = {0.2};
   const SailShape with_edges = Compute(sail);
-  ASSERT_EQ(with_edges.surfaces.size(), 1u);
+  ASSERT_EQ(with_edges.surfaces.size(), 1u) << testing::PrintToString(with_edges.surface_notes);
   const SailSurface& surface = with_edges.surfaces[0];
   EXPECT_NEAR(EdgeHeight_m(surface, "foot"), -0.05, 0.02);
   EXPECT_NEAR(EdgeHeight_m(surface, "head"), 4.15, 0.02);
   const double plain_m2 = Compute(ExampleSail()).surfaces[0].area_m2;
-  EXPECT_NEAR(surface.area_m2, plain_m2 + 0.05 * 3.1 + 0.15 * 1.7 + 0.25 * 4, 0.15);
+  EXPECT_NEAR(surface.area_m2, plain_m2 + 0.05 * 3.1 + 0.15 * 1.7 + 0.25 * 4, 0.1);
   const TempDir dir;
   WriteSailFiles(with_edges, sail.shape, ChooseFrame(sail.shape, sail.layout), {}, dir.path());
   EXPECT_NEAR(ReadCadFaces(dir / "surface.step").area_m2, surface.area_m2, 1e-6);

@@ -82,6 +82,8 @@ TEST(SurfaceInput, TakesPointsAndLinesAlongTheEdges) {
   EXPECT_NEAR((input.edges.luff[0] - Eigen::Vector3d(0.9, 0, -0.1)).norm(), 0, 1e-12);
   EXPECT_EQ(input.edges.beyond_luff_m, 0.03);
   EXPECT_FALSE(input.lines[0].luff_offset_m);
+  EXPECT_TRUE(input.edges.luff_is_seen);
+  EXPECT_FALSE(input.edges.foot_is_seen);
   ASSERT_EQ(input.edges.foot.size(), 2u);  // from luff to leech
   EXPECT_EQ(input.edges.foot[0], Eigen::Vector3d(1, 0, -1));
   EXPECT_EQ(input.edges.beyond_foot_m, 0.0);
