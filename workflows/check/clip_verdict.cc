@@ -232,7 +232,7 @@ class Judge {
     }
     const auto found = FoundCameraNumber(precision.found_cameras);
     if (found && found->status > ReportStatus::kGood) {
-      reasons_.Add(found->status, found->value + "; " + found->advice);
+      reasons_.Add(found->status, fmt::format("camera {}; {}", found->value, found->advice));
     }
   }
 

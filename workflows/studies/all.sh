@@ -6,6 +6,6 @@ set -euo pipefail
 
 folder="$(dirname "${BASH_SOURCE[0]}")"
 for study in marker_design parameters central_frames board_motions rigid_objects conditions accuracy \
-  freeform repeatability rolling_shutter sample_project shooting surface; do
+  freeform repeatability found_cameras rolling_shutter sample_project shooting surface; do
   "$folder/$study.sh" "$@"
 done

@@ -178,6 +178,13 @@ metric() {
   awk -F, -v key="$2" '$1 == "" && $3 == key { print $4 }' "$file"
 }
 
+# found_focal RUN: prints the camera that automatic_reconstructor has found: model, focal length and
+# sigma with commas in between; only the commas if none was found. Its output is in log.txt.
+found_focal() {
+  awk '/^camera: found from the images, / { sub(",", "", $6); print $6 "," $9 "," $11; found = 1 }
+    END { if (!found) print ",," }' "$runs/$1/log.txt"
+}
+
 # table_metric RUN TABLE NAME_KEY NAME KEY: prints KEY of the row whose NAME_KEY is NAME.
 table_metric() {
   local file="$runs/$1/analysis.csv"

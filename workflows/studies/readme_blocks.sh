@@ -191,6 +191,18 @@ block_repeatability() {
         num(cell("predicted_mm"), 2), num(cell("ratio"), 2) }'
 }
 
+block_found_cameras() {
+  echo "| half of | focal length in the file | found in this half | reprojection error with the file's, with the other half's | error of the sides |"
+  echo "|---|---|---|---|---|"
+  table found_cameras.csv '
+    { printf "| %s | %s px | %s ± %s px, %s | %s, %s px | %s, %s mm |\n", cell("object"),
+        num(cell("file_focal_px"), "d"), num(cell("focal_px"), "d"), num(cell("focal_sigma_px"), 2),
+        cell("model"),
+        num(cell("error_file_px"), 2), num(cell("error_found_px"), 2),
+        num(cell("side_error_file_mm"), 2), num(cell("side_error_found_mm"), 2) }'
+  printf '\nFrom %s.\n' "$(made_by found_cameras.csv)"
+}
+
 # --- the studies of thesis chapter 4 ---
 
 # by PARAMETER COLUMN FORMAT: prints a column of parameters.csv for the rows that vary PARAMETER.

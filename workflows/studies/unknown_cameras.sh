@@ -37,13 +37,6 @@ run_job() {
     --reference_path "$clip/truth.csv" --csv_path "$run/analysis.csv" >"$run/analysis.txt" 2>&1 || true
 }
 
-# found_focal RUN: prints model, focal length and sigma with commas in between; only the commas if
-# no camera was found.
-found_focal() {
-  awk '/^camera: found from the images, / { sub(",", "", $6); print $6 "," $9 "," $11; found = 1 }
-    END { if (!found) print ",," }' "$runs/$1/log.txt"
-}
-
 csv="$work/unknown_cameras.csv"
 mapfile -t draws < <(awk -f "$studies/random.awk" -f "$studies/draw_lenses.awk" -v seed="$seed" \
   -v num_draws="$num_draws" -v quick="$quick")

@@ -162,6 +162,10 @@ std::vector<Spoilt> SpoiltWithoutCalibration() {
            [](ClipFacts* facts) {
              facts->precision->found_cameras = {{UnknownCamera(1920, 1080, 1000), {80, 0, 0, 0}}};
            }},
+          {"camera found; focal length 1000", ReportStatus::kBad,
+           [](ClipFacts* facts) {
+             facts->precision->found_cameras = {{UnknownCamera(1920, 1080, 1000), {80, 0, 0, 0}}};
+           }},
           {"from these frames: because", ReportStatus::kBad,
            [](ClipFacts* facts) {
              facts->precision.reset();
