@@ -39,24 +39,28 @@ double HalfDiagonal(const Camera& camera) {
   return 0.5 * std::hypot(camera.width_px, camera.height_px);
 }
 
-// Derivatives of all residuals with respect to the warps of one camera.
+// Derivatives of all residuals with respect to the warps of one camera, at the places of the
+// corners by the model. At the places where the corners were found, the warps would contain their
+// errors, and the residuals would agree with that part of a warp that the adjustment does not
+// absorb.
 RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, CameraId camera_id,
-                            Eigen::Index num_rows) {
+                            const RowMajorMatrix& residuals) {
   const Camera& camera = model.cameras.at(camera_id);
   std::map<ImageId, const ModelImage*> images;
   for (const ModelImage& image : model.images) {
     if (image.camera_id == camera_id) images[image.image_id] = &image;
   }
-  RowMajorMatrix design = RowMajorMatrix::Zero(num_rows, kNumWarps);
+  RowMajorMatrix design = RowMajorMatrix::Zero(residuals.rows(), kNumWarps);
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     const TrackElement& element = problem.corners[i].second;
     const auto image = images.find(element.image_id);
     if (image == images.end()) continue;
-    const Eigen::Vector2d offset =
-        (image->second->points2D.at(element.point2D_idx).x_in_image_px - PrincipalPoint(camera)) /
-        HalfDiagonal(camera);
-    design.middleRows<2>(2 * static_cast<Eigen::Index>(i)) =
-        WarpsAt(offset.x(), offset.y()) / problem.corner_sigmas_px[i];
+    const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
+    const Eigen::Vector2d found_px = image->second->points2D.at(element.point2D_idx).x_in_image_px;
+    const Eigen::Vector2d by_model_px =
+        found_px + problem.corner_sigmas_px[i] * residuals.block<2, 1>(row, 0);
+    const Eigen::Vector2d offset = (by_model_px - PrincipalPoint(camera)) / HalfDiagonal(camera);
+    design.middleRows<2>(row) = WarpsAt(offset.x(), offset.y()) / problem.corner_sigmas_px[i];
   }
   return design;
 }
@@ -112,7 +116,7 @@ CalibrationEvidence TestCamera(const Model& model, CameraId camera_id,
                                const MarkerLinearization& linearization,
                                const RowMajorMatrix& residuals) {
   const auto& [state, problem, jacobian, covariance] = linearization;
-  const RowMajorMatrix design = DesignMatrix(model, problem, camera_id, residuals.rows());
+  const RowMajorMatrix design = DesignMatrix(model, problem, camera_id, residuals);
   const RowMajorMatrix left = ErrorsLeft(jacobian, covariance, design);
   const Eigen::MatrixXd full_information = design.transpose() * design;
   const Eigen::MatrixXd information = design.transpose() * left;

@@ -1,6 +1,7 @@
 #include "reconstruct/adjust/calibration_score.h"
 
 #include <cmath>
+#include <functional>
 
 #include <gmock/gmock.h>
 
@@ -81,6 +82,51 @@ TEST(CalibrationScore, ARightCalibrationIsLeftAloneAndItsChiSquaredIsThatOfChanc
   EXPECT_LE(num_contradicted, kNumDraws / 20);
   // The mean over about 8 * 40 squared normal variables has a sigma of 0.08.
   EXPECT_NEAR(ComputeStatistics(per_degree).mean, 1.0, 0.3);
+}
+
+// A board of 8 markers of about 20 px that fills a small part of the image. Poses and shape absorb
+// nearly all of a warp, so errors that are not independent would pass for the rest.
+SyntheticScene SmallBoard(std::uint32_t seed) {
+  SyntheticSceneOptions options;
+  options.kind = seed % 2 == 0 ? SceneKind::kPlane : SceneKind::kSail;
+  options.num_rows = 2;
+  options.num_columns = 4;
+  options.spacing_m = 0.15;
+  options.marker_length_m = 0.06;
+  options.num_frames = 24;
+  options.camera = {CameraModel::kOpenCV, 1280, 720, {350, 350, 642, 357, -0.1, 0.02, 0, 0}};
+  options.seed = seed;
+  return MakeSyntheticScene(options);
+}
+
+// How often the true calibration is contradicted over draws of scenes with errors, and the mean
+// chi-squared for each degree of freedom.
+struct Contradictions {
+  int num = 0;
+  double per_degree = 0.0;
+};
+
+Contradictions CountOverDraws(int num_draws,
+                              const std::function<void(std::uint32_t, SyntheticScene*)>& disturb) {
+  Contradictions contradictions;
+  for (int draw = 0; draw < num_draws; ++draw) {
+    const auto seed = static_cast<std::uint32_t>(100 + draw);
+    SyntheticScene scene = SmallBoard(seed);
+    disturb(seed, &scene);
+    const CalibrationEvidence evidence = Evidence(scene, scene.camera);
+    contradictions.num += SigmasAgainst(evidence) > kMaxCalibrationSigmas;
+    contradictions.per_degree += evidence.chi_squared / evidence.num_changes / num_draws;
+  }
+  return contradictions;
+}
+
+// The noise of the places of the corners must not enter the warps.
+TEST(CalibrationScore, NoiseOfFewSmallMarkersIsNoEvidence) {
+  const auto [num, per_degree] = CountOverDraws(30, [](std::uint32_t seed, SyntheticScene* scene) {
+    AddNoise({0.04 + 0.04 * (seed % 4), 0, 0, 200, seed}, scene);
+  });
+  EXPECT_LE(num, 1);
+  EXPECT_NEAR(per_degree, 1.0, 0.25);
 }
 
 TEST(CalibrationScore, WrongCalibrationsAreContradictedAndNamed) {
