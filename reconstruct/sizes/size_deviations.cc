@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include "importer/base/statistics.h"
@@ -57,17 +58,35 @@ std::vector<bool> AreBeyond(const std::vector<double>& normalized) {
   return are_beyond;
 }
 
-// The scatter of the values that are not left out, as wide as few of them may have hidden it.
-double ScatterWithout(const std::vector<bool>& is_left_out, const std::vector<double>& normalized,
-                      std::size_t num_groups) {
-  double sum = 0.0, num = 0.0;
+// The values that are not left out.
+struct SizeScatter {
+  double sum_of_squares = 0.0;
+  double degrees_of_freedom = 0.0;
+
+  // As wide as few values may have hidden it.
+  double Widened() const {
+    return StudentFactor(degrees_of_freedom) * std::sqrt(sum_of_squares / degrees_of_freedom);
+  }
+
+  // Whether values with a standard deviation of 1 scatter as far in fewer than 0.1 % of the cases.
+  bool IsBeyondChance() const {
+    constexpr double kChance = 1e-3;
+    const boost::math::chi_squared distribution(degrees_of_freedom);
+    return sum_of_squares > boost::math::quantile(boost::math::complement(distribution, kChance));
+  }
+};
+
+SizeScatter ScatterWithout(const std::vector<bool>& is_left_out,
+                           const std::vector<double>& normalized, std::size_t num_groups) {
+  SizeScatter scatter;
+  double num = 0.0;
   for (std::size_t i = 0; i < normalized.size(); ++i) {
     if (is_left_out[i]) continue;
-    sum += normalized[i] * normalized[i];
+    scatter.sum_of_squares += normalized[i] * normalized[i];
     num += 1.0;
   }
-  const double degrees_of_freedom = std::max(1.0, num - static_cast<double>(num_groups));
-  return StudentFactor(degrees_of_freedom) * std::sqrt(sum / degrees_of_freedom);
+  scatter.degrees_of_freedom = std::max(1.0, num - static_cast<double>(num_groups));
+  return scatter;
 }
 
 // Whether at least two thirds of the markers are not contradicting.
@@ -175,15 +194,17 @@ SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<Ma
   const bool most_agree = MostAgree(is_beyond);
   if (!most_agree) is_beyond.assign(sizes.size(), false);
   const bool are_many = sizes.size() >= kManyOfGroup * deviations.num_groups;
+  const auto scatter = [&](double tolerance) {
+    return ScatterWithout(is_beyond, normalize(tolerance), deviations.num_groups);
+  };
+  const bool is_wide = !are_many || !most_agree || robust_scatter(print_tolerance) > kMaxScatter;
   SizeAgreement agreement;
-  agreement.scatters_more = are_many ? !most_agree || robust_scatter(print_tolerance) > kMaxScatter
+  agreement.scatters_more = are_many ? is_wide && scatter(print_tolerance).IsBeyondChance()
                                      : !MostAgree(AreBeyond(normalize(print_tolerance)));
   agreement.print_tolerance =
-      are_many && !agreement.scatters_more
-          ? print_tolerance
-          : ExplainingTolerance(print_tolerance, [&](double tolerance) {
-              return ScatterWithout(is_beyond, normalize(tolerance), deviations.num_groups);
-            });
+      is_wide ? ExplainingTolerance(print_tolerance,
+                                    [&](double tolerance) { return scatter(tolerance).Widened(); })
+              : print_tolerance;
   agreement.sigmas = normalize(agreement.print_tolerance);
   agreement.is_contradicting = AreBeyond(agreement.sigmas);
   if (!most_agree) agreement.is_contradicting = is_beyond;

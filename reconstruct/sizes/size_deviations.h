@@ -82,9 +82,11 @@ struct SizeAgreement {
 // Markers contradict the others if they deviate by more than kMaxSizeSigmas while at least two
 // thirds of the markers agree. Otherwise nothing shows which sizes are wrong, and all are used.
 // `print_tolerance` is 1 sigma of a printed side, as a fraction. With ten or more markers per group
-// it is raised if they scatter more than 1.3 times as far as it explains. Fewer markers may agree
-// by chance, so it is always raised to their scatter, which is widened by Student's t; they scatter
-// clearly more if more than a third of them would contradict the others at the given tolerance.
+// it is raised if they scatter more than 1.3 times as far as it explains; they scatter clearly more
+// if this is also beyond chance, because the median of ten deviations exceeds 1.3 times its
+// expectation in a fifth of the cases. Fewer markers may agree by chance, so it is always raised to
+// their scatter, which is widened by Student's t; they scatter clearly more if more than a third of
+// them would contradict the others at the given tolerance.
 // `sizes` must not be empty.
 SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                               double print_tolerance);

@@ -16,6 +16,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     sizes/few_markers_test.cc
     sizes/marker_sizes_test.cc
     sizes/part_sizes_test.cc
+    sizes/size_deviations_test.cc
     problem/error_correlation_test.cc
     problem/marker_uncertainty_test.cc
     problem/scale_bar_test.cc
