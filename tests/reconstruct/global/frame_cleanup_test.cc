@@ -32,6 +32,26 @@ TEST(LeaveOutBlurredFrames, BlurContradictsNothing) {
   EXPECT_THAT(blurred_map.global.num_contradicting_of_frame, IsEmpty());
 }
 
+// The frames 5, 15 and 25 are of a camera with a longer lens.
+SyntheticScene WithThreeFramesOfAnotherLens(SyntheticScene scene, double zoom) {
+  SyntheticScene zoomed = scene;
+  ZoomFrom(0, zoom, &zoomed);
+  for (const std::size_t i : {5, 15, 25}) scene.frames[i] = zoomed.frames[i];
+  return scene;
+}
+
+TEST(LeaveOutBlurredFrames, SharpFramesThatDoNotFitContradictTheMap) {
+  GrownMap grown(WithThreeFramesOfAnotherLens(SailWithNoise(26, false, TestSeed()), 1.004));
+  LeaveOutBlurredFrames(&grown.global);
+  EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 15, 25));
+  for (const int idx : {5, 15, 25}) {
+    EXPECT_THAT(grown.global.reason_of_image[static_cast<std::size_t>(idx)],
+                HasSubstr("sharp, but of another camera"));
+    EXPECT_GE(grown.global.num_contradicting_of_frame[idx], 8) << idx;
+  }
+  EXPECT_EQ(grown.global.num_contradicting_of_frame.size(), 3u);
+}
+
 TEST(CameraDoubt, AThirdOfBlurredFramesIsNoReason) {
   SyntheticScene scene = SailWithNoise(21, false, TestSeed());
   SyntheticScene blurred = scene;
