@@ -100,6 +100,11 @@ po::options_description Describe(RenderClipOptions* options) {
   add("trim_change_m", Value(&clip->trim_change_m),
       "largest displacement of a change of trim halfway; truth_after.csv");
   add("reflection", Value(&render->num_reflections), "number of bright patches on the sail");
+  add("shadows", Value(&render->num_shadows),
+      "number of straight shadows on the sail, of all widths and softness; half of them move, 0 to "
+      "100");
+  add("shadow_depth", Value(&render->shadow_depth),
+      "share of the light that the darkest shadow takes, 0 to 0.95");
   add("busy", Value(&clip->busy), "clutter behind the scene and on the cloth");
   add("margin_sides", Value(&clip->margin_sides),
       "white paper around a marker, part of its side, 0.02 to 0.5");

@@ -12,6 +12,7 @@
 
 #include "tests/support/render/coverage_image.h"
 #include "tests/support/render/picture_effects.h"
+#include "tests/support/render/shadows.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {
@@ -268,6 +269,33 @@ void DrawReflection(const Eigen::Vector2d& middle, const Eigen::Matrix2d& image_
   }
 }
 
+// The vertex of a sheet next to a place, which runs from 0 to 1 to the right and upwards.
+Vertex SeeOnSheet(const FrameView& view, const ClipSheet& sheet, const Eigen::Vector2d& place) {
+  const int column =
+      std::clamp(static_cast<int>(place.x() * sheet.num_columns), 0, sheet.num_columns);
+  const int row = std::clamp(static_cast<int>((1 - place.y()) * sheet.num_rows), 0, sheet.num_rows);
+  return view.See(sheet.vertices[static_cast<std::size_t>(row * (sheet.num_columns + 1) + column)]);
+}
+
+// Shadows on the last sheet (the sail), and on what the picture shows in line with them.
+void AddShadows(const ClipScene& scene, const FrameView& view, const SurfaceRenderOptions& options,
+                double clip_share, cv::Mat* surfaces) {
+  constexpr double kHalfLength = 0.15;
+  const ClipSheet& sheet = scene.sheets.back();
+  for (const Shadow& shadow :
+       DrawShadows(options.num_shadows, options.shadow_depth, scene.options.seed)) {
+    const Eigen::Vector2d place = shadow.place + clip_share * shadow.motion_in_clip;
+    const Vertex from = SeeOnSheet(view, sheet, place - kHalfLength * shadow.direction);
+    const Vertex to = SeeOnSheet(view, sheet, place + kHalfLength * shadow.direction);
+    if (!from.x_in_image_px || !to.x_in_image_px) continue;
+    const Eigen::Vector2d from_px = kFinePerSensorPx * *from.x_in_image_px;
+    const Eigen::Vector2d to_px = kFinePerSensorPx * *to.x_in_image_px;
+    const double length_m = (to.x_in_world - from.x_in_world).norm();
+    if (length_m > 0)
+      AddShadow(shadow, from_px, to_px, (to_px - from_px).norm() / length_m, surfaces);
+  }
+}
+
 // Mirrored sunlight: patches that wander over the last sheet (the sail) as the camera moves.
 void AddReflections(const ClipScene& scene, const FrameView& view, int num_reflections,
                     const cv::Mat& surfaces, cv::Mat* image) {
@@ -275,10 +303,7 @@ void AddReflections(const ClipScene& scene, const FrameView& view, int num_refle
   const Eigen::Vector3d eye_m = Inverse(view.cam_from_world()).translation;
   const double turn = std::atan2(eye_m.x(), -eye_m.y());
   const auto in_image = [&](double u, double v) {
-    const int column = std::clamp(static_cast<int>(u * sheet.num_columns), 0, sheet.num_columns);
-    const int row = std::clamp(static_cast<int>((1 - v) * sheet.num_rows), 0, sheet.num_rows);
-    const auto index = static_cast<std::size_t>(row * (sheet.num_columns + 1) + column);
-    return view.See(sheet.vertices[index]).x_in_image_px;
+    return SeeOnSheet(view, sheet, {u, v}).x_in_image_px;
   };
   for (int i = 0; i < num_reflections; ++i) {
     const double u = std::fmod(0.34 + 0.381966 * i, 0.8) + 0.1 - 0.15 * turn;
@@ -302,6 +327,8 @@ void SurfaceRenderOptions::Check() const {
   CheckOptionRange("noise", noise, 0, 100);
   CheckOptionRange("shot_noise", shot_noise, 0, 100);
   CheckOptionRange("reflection", num_reflections, 0, 20);
+  CheckOptionRange("shadows", num_shadows, 0, 100);
+  CheckOptionRange("shadow_depth", shadow_depth, 0, 0.95);
   CheckOptionRange("glare", glare, 0, 0.5);
   CheckOptionRange("ink_level", ink_level, 0.01, 0.5);
   CheckOptionRange("paper_level", paper_level, 0.5, 1);
@@ -311,7 +338,10 @@ void SurfaceRenderOptions::Check() const {
 cv::Mat RenderClipFrame(const ClipScene& scene, const SurfaceRenderOptions& options,
                         int frame_idx) {
   const FrameView view(scene, frame_idx);
-  const cv::Mat surfaces = Exposed(options, frame_idx, DrawSurfaces(scene, view, options));
+  cv::Mat fine_surfaces = DrawSurfaces(scene, view, options);
+  AddShadows(scene, view, options, static_cast<double>(frame_idx) / scene.options.num_frames,
+             &fine_surfaces);
+  const cv::Mat surfaces = Exposed(options, frame_idx, fine_surfaces);
   cv::Mat image = DrawSky(scene, view);  // smooth, so that blur does not change it
   if (scene.options.busy) {
     cv::Mat fine;

@@ -1,8 +1,9 @@
 // Renders the frames of a clip as a camera takes them. Surfaces with their markers are drawn in
-// linear light and blurred by lens and motion before the sensor takes its means over pixels; sea,
-// sky, reflections, veiling glare and noise are added. The response of the camera
-// (camera_response.h) and 8 bits come last; with a linear response and no glare, grey values equal
-// light. The same scene, options and frame give the same bytes. Several threads may render frames.
+// linear light, darkened by shadows, and blurred by lens and motion before the sensor takes its
+// means over pixels; sea, sky, reflections, veiling glare and noise are added. The response of the
+// camera (camera_response.h) and 8 bits come last; with a linear response and no glare, grey values
+// equal light. The same scene, options and frame give the same bytes. Several threads may render
+// frames.
 
 #pragma once
 
@@ -24,6 +25,8 @@ struct SurfaceRenderOptions {
   double noise = 2.0;           // standard deviation of the read noise, in light (0 to 255)
   double shot_noise = 0.0;      // standard deviation of the shot noise at full light
   int num_reflections = 0;      // bright patches on the scene's last sheet that hide markers
+  int num_shadows = 0;          // bands across the scene's last sheet (shadows.h)
+  double shadow_depth = 0.5;    // share of the light that the darkest of them takes
   double glare = 0.0;           // light scattered over all pixels, as a fraction of full light
   double ink_level = 38.0 / 255;     // reflectance of printed cells
   double paper_level = 218.0 / 255;  // reflectance of the paper
