@@ -10,7 +10,7 @@ house_folder(importer/process PUBLIC
 house_folder(importer/text PUBLIC
   csv id_ranges markup number_text output_date shown_text text_file)
 house_folder(importer/lanes PUBLIC
-  float_lanes normal_lanes)
+  blurred_cells float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose directions disjoint_sets least_squares look_at opencv_pose pose_refinement pose_step principal_axes
   quad ransac rigid3 symmetric_eigen unit_square_map units)
@@ -32,9 +32,11 @@ house_folder(importer/detect PUBLIC
   marker_location marker_quad marker_search search_regions)
 house_folder(importer/rotation PUBLIC
   rotation_ambiguity rotation_evidence)
+house_folder(importer/lighting PUBLIC
+  light_map lighting)
 house_folder(importer/pattern PUBLIC
-  clipped_pixels fit_equations formation_estimate image_formation known_marker lens_bend pattern_fit
-  pattern_picture pattern_problem refined_corners)
+  clipped_pixels fit_equations formation_estimate image_formation known_marker lens_bend
+  lighting_fit pattern_fit pattern_picture pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
   marker_detector read_again)
 house_folder(importer/track PUBLIC

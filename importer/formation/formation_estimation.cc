@@ -6,9 +6,12 @@
 #include <utility>
 
 #include "importer/base/log.h"
+#include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
 #include "importer/formation/balanced_edges.h"
 #include "importer/formation/formation_problem.h"
+#include "importer/pattern/clipped_pixels.h"
+#include "importer/pattern/lighting_fit.h"
 
 namespace velamap {
 namespace {
@@ -101,6 +104,48 @@ double InsetSigmaByModel(const State& winner, const State& balanced) {
          Median(std::move(blurs_px));
 }
 
+// A sample that a shadow crosses shows another tone curve than the others.
+bool IsLitUnevenly(const FormationSample& sample, const ImageFormation& formation) {
+  auto fitted = FitSample(sample, formation);
+  if (!fitted) return false;
+  PatternProblem& problem = fitted->problem;
+  PatternMinimum& minimum = fitted->minimum;
+  if (HasClippedPixels(sample.gray, problem.box) &&
+      !RefineBeyondClipping(sample.gray, formation, kMaxPatternPixels, kPatternTolerancePx,
+                            &problem, &minimum)) {
+    return false;
+  }
+  return !FitLighting(&problem, &minimum).IsEven();
+}
+
+// The samples without those that shadows cross, if these are more than a few; else all of them.
+std::vector<FormationSample> WithEvenLight(const std::vector<FormationSample>& samples,
+                                           const ImageFormationParameters& parameters,
+                                           const FitWorkers& workers) {
+  constexpr double kFew = 0.1, kMinShare = 0.25;
+  constexpr std::size_t kMinSamples = 8;
+  const ImageFormation formation(parameters);
+  const auto without_uneven = [&](const std::vector<FormationSample>& all) {
+    std::vector<char> is_uneven(all.size());
+    ParallelFor(all.size(), workers.num_threads,
+                [&](std::size_t i) { is_uneven[i] = IsLitUnevenly(all[i], formation); });
+    std::vector<FormationSample> even;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!is_uneven[i]) even.push_back(all[i]);
+    }
+    return even;
+  };
+  const auto share = [](const std::vector<FormationSample>& part,
+                        const std::vector<FormationSample>& all) {
+    return static_cast<double>(part.size()) / static_cast<double>(all.size());
+  };
+  const std::vector<FormationSample> some = SomeOf(samples);
+  if (share(without_uneven(some), some) > 1 - kFew) return samples;
+  std::vector<FormationSample> even = without_uneven(samples);
+  LogDebug("uneven light on {} of {} samples", samples.size() - even.size(), samples.size());
+  return share(even, samples) > kMinShare && even.size() >= kMinSamples ? even : samples;
+}
+
 FormationEstimate Unknown() {
   FormationEstimate unknown;
   // How far the sRGB curve of most cameras moves edges of the usual sharpness.
@@ -108,10 +153,8 @@ FormationEstimate Unknown() {
   return unknown;
 }
 
-}  // namespace
-
-FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
-                                    const FitWorkers& workers) {
+FormationEstimate EstimateOnce(const std::vector<FormationSample>& samples, bool is_inverted,
+                               const FitWorkers& workers) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; markers are cut with scissors
   constexpr int kFewIterations = 2;
   if (samples.size() < kMinFormationSamples) return Unknown();
@@ -152,6 +195,16 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
                                             outlines.inset_sigma_px)
                                 .norm();
   return estimate;
+}
+
+}  // namespace
+
+FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
+                                    const FitWorkers& workers) {
+  FormationEstimate estimate = EstimateOnce(samples, is_inverted, workers);
+  if (estimate.num_samples == 0) return estimate;
+  const std::vector<FormationSample> even = WithEvenLight(samples, estimate.parameters, workers);
+  return even.size() < samples.size() ? EstimateOnce(even, is_inverted, workers) : estimate;
 }
 
 }  // namespace velamap

@@ -9,6 +9,7 @@
 #include "importer/geometry/unit_square_map.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/foreign_pixels.h"
+#include "importer/pattern/lighting_fit.h"
 #include "importer/pattern/pattern_picture.h"
 #include "importer/pattern/pattern_problem.h"
 
@@ -26,14 +27,16 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const PatternEquations& equations,
 
 // The priors stabilize weak parameters but are not observations, so their errors do not count.
 std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
-                                              const PatternMinimum& minimum) {
+                                              const PatternMinimum& minimum,
+                                              const Lighting& lighting) {
   const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
   if (factors.info() != Eigen::Success) return std::nullopt;
-  const P::Matrix inverse = factors.solve(P::Matrix::Identity());
+  P::Matrix inverse = factors.solve(P::Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
+  const ResidualNoise noise = NoiseOf(minimum.equations, inverse);
+  inverse += AddedByLighting(problem, minimum, lighting);
   // The diagonal of inverse * (hessian - weight) * inverse.
   const P::Vector variances = inverse.diagonal() - inverse.cwiseAbs2().lazyProduct(problem.weight);
-  const ResidualNoise noise = NoiseOf(minimum.equations, inverse);
   RefinedCorners refined;
   refined.corners_px = CornersOf(minimum.parameters);
   for (int i = 0; i < kNumCorners; ++i) {
@@ -86,20 +89,29 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
       MakePatternProblem(gray, corners_px, marker, formation, &minimum);
   if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
   const double rms_gray = minimum.equations.Rms();
-  if ((HasClippedPixels(gray, problem->box) &&
-       !RefineBeyondClipping(gray, formation, kMaxPatternPixels, kPatternTolerancePx, &*problem,
-                             &minimum)) ||
+  const auto refine_beyond_clipping = [&] {
+    return !HasClippedPixels(gray, problem->box) ||
+           RefineBeyondClipping(gray, formation, kMaxPatternPixels, kPatternTolerancePx, &*problem,
+                                &minimum);
+  };
+  // A single cell of the wrong colour leaves a larger residual.
+  constexpr double kLargeRms = 0.05;  // of the contrast
+  const auto mismatched = [&] {
+    return rms_gray > kLargeRms * ContrastOf(*problem, minimum) ? MismatchedCells(*problem, minimum)
+                                                                : std::vector<cv::Point>();
+  };
+  if (!refine_beyond_clipping()) return std::nullopt;
+  // A lighting might explain a cell of the wrong colour.
+  const std::vector<cv::Point> mismatched_in_even_light = mismatched();
+  const Lighting lighting = FitLighting(&*problem, &minimum);
+  if ((!lighting.IsEven() && !refine_beyond_clipping()) ||
       !RefitWithoutForeignPixels(&*problem, &minimum)) {
     return std::nullopt;
   }
-  auto refined = WithUncertainty(*problem, minimum);
+  auto refined = WithUncertainty(*problem, minimum, lighting);
   if (!refined) return std::nullopt;
   refined->rms_gray = rms_gray;
-  // A single cell of the wrong colour leaves a larger residual.
-  constexpr double kLargeRms = 0.05;  // of the contrast
-  if (rms_gray > kLargeRms * ContrastOf(*problem, minimum)) {
-    refined->mismatched_cells = MismatchedCells(*problem, minimum);
-  }
+  refined->mismatched_cells = lighting.IsEven() ? mismatched() : mismatched_in_even_light;
   return refined;
 }
 

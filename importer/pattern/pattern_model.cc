@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "importer/detect/interpolate.h"
+
 namespace velamap {
 namespace {
 
@@ -46,6 +48,11 @@ class RingReading {
   double beyond_cells_, margin_low_, margin_high_, blur_cells_;
 };
 
+double LightingAt(const PatternModel& model, const Eigen::Vector2d& x_px) {
+  if (model.lighting.empty()) return 1.0;
+  return InterpolateGray<float>(model.lighting, x_px - model.center_px + model.center_in_patch_px);
+}
+
 }  // namespace
 
 QuadCorners CornersOf(const P::Vector& parameters) {
@@ -85,7 +92,8 @@ void FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vector
         model->inner[static_cast<std::size_t>(j + kRing)] |= is_light << (i + kRing);
       } else if (outside == kRing) {
         const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
-        const double value = LightAt(patch, *model->formation, map.ToImage(uv.x(), uv.y()));
+        const Eigen::Vector2d x_px = map.ToImage(uv.x(), uv.y());
+        const double value = LightAt(patch, *model->formation, x_px) / LightingAt(*model, x_px);
         const Within u = across_u.Weights(i, n), v = across_v.Weights(j, n);
         const double surround_share = 1 - u.quiet_zone * v.quiet_zone;
         const double read = (value - dark) / contrast - 1 + u.square * v.square;

@@ -7,7 +7,7 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/pattern/blurred_cells.h"
+#include "importer/lanes/blurred_cells.h"
 #include "importer/pattern/image_formation.h"
 #include "importer/pattern/lens_bend.h"
 
@@ -54,6 +54,7 @@ struct PatternModel {
   double outline_corner_weight = 1.0;  // of the pixels at the corners of the cells' outlines
   const ImageFormation* formation = nullptr;
   cv::Mat scattered_light;  // of the patch
+  cv::Mat lighting;         // CV_32F, of the patch: factors of the light; empty: one (lighting.h)
   Eigen::Vector2d center_in_patch_px;
 };
 

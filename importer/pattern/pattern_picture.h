@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "importer/geometry/unit_square_map.h"
-#include "importer/pattern/blurred_cells.h"
+#include "importer/lanes/blurred_cells.h"
 #include "importer/pattern/pattern_model.h"
 
 namespace velamap {
@@ -136,7 +136,9 @@ class PatternPicture {
 
     const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);
     const Floats place_x = inverse_diagonal * x, place_y = inverse_diagonal * y;
-    const Floats light = 1.0f + p[P::kGradientX] * place_x + p[P::kGradientY] * place_y;
+    const Floats lighting = LightingAt(x, y);
+    const Floats light =
+        lighting * (1.0f + p[P::kGradientX] * place_x + p[P::kGradientY] * place_y);
     const float step = p[P::kLight] - p[P::kDark];
     const Floats contrast = light * step;
     const Floats level = p[P::kDark] + step * pattern.value;
@@ -161,8 +163,8 @@ class PatternPicture {
     jacobian[P::kBlurV] = contrast * cells_v * pattern.by_blur_v;
     jacobian[P::kDark] = light * (1.0f - pattern.value);
     jacobian[P::kLight] = light * pattern.value;
-    jacobian[P::kGradientX] = level * place_x;
-    jacobian[P::kGradientY] = level * place_y;
+    jacobian[P::kGradientX] = lighting * level * place_x;
+    jacobian[P::kGradientY] = lighting * level * place_y;
     jacobian[P::kSurround] = contrast * surroundings.blended.value;
     jacobian[P::kInnerLight] = contrast * inner;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -205,17 +207,24 @@ class PatternPicture {
 
   // The light that the halo adds to the pixels nearest to the places.
   Floats Scattered(Floats x, Floats y) const {
-    const cv::Mat& scattered = model_.scattered_light;
-    Floats light{};
-    if (scattered.empty()) return light;
+    return model_.scattered_light.empty() ? Floats{} : NearestTo(x, y, model_.scattered_light);
+  }
+
+  Floats LightingAt(Floats x, Floats y) const {
+    return model_.lighting.empty() ? AllLanes(1.0) : NearestTo(x, y, model_.lighting);
+  }
+
+  // Values of the patch's pixels.
+  Floats NearestTo(Floats x, Floats y, const cv::Mat& values) const {
     const Floats column = x + static_cast<float>(model_.center_in_patch_px.x() + 0.5);
     const Floats row = y + static_cast<float>(model_.center_in_patch_px.y() + 0.5);
+    Floats nearest{};
     for (int lane = 0; lane < kLanes; ++lane) {
-      light[lane] =
-          scattered.at<float>(std::clamp(static_cast<int>(row[lane]), 0, scattered.rows - 1),
-                              std::clamp(static_cast<int>(column[lane]), 0, scattered.cols - 1));
+      nearest[lane] =
+          values.at<float>(std::clamp(static_cast<int>(row[lane]), 0, values.rows - 1),
+                           std::clamp(static_cast<int>(column[lane]), 0, values.cols - 1));
     }
-    return light;
+    return nearest;
   }
 
   // Whether the cell at a place (in cells), or the quiet zone there, is light.

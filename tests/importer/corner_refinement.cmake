@@ -17,6 +17,8 @@ velamap_test(
     lanes/normal_lanes_test.cc
     pattern/fit_equations_test.cc
     pattern/image_formation_test.cc
+    lighting/lighting_test.cc
+    pattern/lighting_fit_test.cc
     pattern/pattern_picture_test.cc
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
