@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "importer/base/error.h"
 #include "importer/base/log.h"
 #include "reconstruct/adjust/calibration_choice.h"
@@ -26,6 +28,7 @@
 #include "reconstruct/problem/corner_residuals.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
+#include "reconstruct/sizes/marker_curvature.h"
 #include "reconstruct/sizes/marker_sizes.h"
 
 namespace velamap {
@@ -89,6 +92,27 @@ void MarkerAdjuster::AdjustWithLooseSizes() {
                                                  solution_.options.print_tolerance);
     Minimize(1e-3, &solution_);
     if (CalibrateRobustly(&solution_) < kMaxChange && round > 0) break;
+  }
+}
+
+void MarkerAdjuster::MeasureChords() {
+  // The neighbours show the curvature between markers, not that of the marker itself.
+  constexpr double kUnknownShare = 0.25;
+  constexpr double kWorthAWarning = 5e-4;
+  MarkerState state = solution_.state;
+  const ChordSummary chords = SetChords(&state);
+  if (solution_.options.bent_markers) {
+    for (const MarkerBlock& marker : state.markers) {
+      solution_.chord_ratios[marker.marker_id] = marker.chord_ratios;
+    }
+    solution_.weights.chords_as_scale = kUnknownShare * chords.mean_shortening;
+  } else if (chords.mean_shortening >
+             std::max(kWorthAWarning, PrintScaleSigma(solution_.options, solution_.weights))) {
+    solution_.warnings.push_back(fmt::format(
+        "markers that bend with this surface have their corners {:.2f} % closer to each other than "
+        "printed on average, {:.2f} % on marker {}, and the result would be larger by as much: set "
+        "MarkerAdjustment.bent_markers to 1 if they bend",
+        100 * chords.mean_shortening, 100 * chords.largest_shortening, chords.marker_id));
   }
 }
 
@@ -159,6 +183,7 @@ void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solut
 
 void MarkerAdjuster::AdjustToCorners() {
   AdjustWithLooseSizes();
+  MeasureChords();
   RejectContradictingSizes();
   AdjustWithSizes();
 }

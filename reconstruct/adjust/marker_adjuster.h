@@ -30,6 +30,10 @@ class MarkerAdjuster {
   // calibrates the corners' sigmas by the residuals.
   void AdjustWithLooseSizes();
 
+  // Finds out how much shorter than printed the sides of markers are that bend with a curved
+  // surface: corrects for it with bent_markers, else warns if the scale seems more certain.
+  void MeasureChords();
+
   // Drops the size of markers that contradict the others, raises the print tolerance where the
   // sizes scatter more than it explains, and lets each part have a scale of its own where parts
   // disagree.
@@ -39,7 +43,7 @@ class MarkerAdjuster {
   // come to fit, until nothing changes.
   void AdjustWithSizes();
 
-  // The three steps above.
+  // The four steps above.
   void AdjustToCorners();
 
   // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the

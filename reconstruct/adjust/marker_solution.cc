@@ -32,6 +32,10 @@ MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
   state.inset_px = solution.state.inset_px;
   state.print_scale = solution.state.print_scale;
   for (auto& [part, scale] : state.part_scales) scale = solution.state.part_scales.at(part);
+  for (MarkerBlock& marker : state.markers) {
+    const auto known = solution.chord_ratios.find(marker.marker_id);
+    if (known != solution.chord_ratios.end()) marker.chord_ratios = known->second;
+  }
   return state;
 }
 

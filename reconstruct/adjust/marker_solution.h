@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,6 +30,7 @@ struct MarkerSolution {
   // print scale.
   MarkerState state;
   MarkerWeights weights;
+  std::map<int, std::array<double, kNumCorners>> chord_ratios;  // by marker id; none: flat
   // Whether the free intrinsics come from SetFreeIntrinsics() and not from the user's options.
   bool has_chosen_intrinsics = false;
   int num_iterations = 0;  // of all minimizations

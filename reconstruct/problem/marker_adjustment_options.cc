@@ -35,6 +35,9 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             FromTo(0, 1)},
            {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
             "the same on parts that the layout calls rigid", FromTo(0, 1)},
+           {"MarkerAdjustment.bent_markers", &options->bent_markers, "0|1",
+            "markers bend with a curved surface, so their sides are the chords of arcs as long as "
+            "printed; 0: they may be stiff"},
            {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
             "1 sigma of an inset that all corners share (seen too far inside their marker), beyond "
             "what the importer leaves open; widens the scale's sigma",

@@ -32,6 +32,10 @@ struct MarkerAdjustmentOptions {
   // cloth, which bends, and on parts that the layout calls rigid. 0: unknown.
   double cloth_flatness = 0.01;
   double rigid_flatness = 1e-3;
+  // The markers bend with the surface that they are on, so their corners are closer to each other
+  // than printed (marker_curvature.h). Otherwise they are taken to be stiff, with a warning where
+  // that matters.
+  bool bent_markers = false;
   // 1 sigma of an error that all corners share, px: each is seen this far inside (or outside) its
   // marker along both sides. It widens the scale's sigma according to the size of the markers in
   // the images. It is added (root of the sum of squares) to what the estimated image formation

@@ -125,7 +125,8 @@ class ProblemBuilder {
       const double side_sigma_m =
           std::hypot(weights_.print_tolerance * marker.length_m, options_.print_resolution_m);
       const MarkerPrior prior{marker.length_m, has_size ? side_sigma_m : 0.0,
-                              std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
+                              std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m,
+                              marker.chord_ratios};
       auto error = std::make_unique<MarkerPriorError>(prior, marker.corners);
       if (error->num_residuals() == 0) continue;
       AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale,
@@ -249,8 +250,9 @@ class ProblemBuilder {
 }  // namespace
 
 double PrintScaleSigma(const MarkerAdjustmentOptions& options, const MarkerWeights& weights) {
-  return std::max(std::hypot(options.common_print_tolerance, weights.inset_as_scale),
-                  weights.print_scale_by_bars);
+  return std::max(
+      std::hypot(options.common_print_tolerance, weights.inset_as_scale, weights.chords_as_scale),
+      weights.print_scale_by_bars);
 }
 
 MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,

@@ -24,6 +24,8 @@ struct MarkerWeights {
   double print_tolerance = 0.0;
   // 1 sigma of the relative scale error caused by an inset that is not estimated.
   double inset_as_scale = 0.0;
+  // 1 sigma of the relative scale error that is left by the chords of markers on curved surfaces.
+  double chords_as_scale = 0.0;
   // 1 sigma of the scale of the print, as a fraction, that a contradiction between scale bars and
   // markers requires; 0 without a contradiction.
   double print_scale_by_bars = 0.0;

@@ -65,6 +65,10 @@ std::vector<std::pair<int, int>> MarkerPriorError::Sides(const std::vector<int>&
 MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners)
     : prior_(prior) {
   if (prior.side_sigma_m > 0) sides_ = Sides(corners);
+  for (const auto& side : sides_) {
+    const int corner = corners[static_cast<std::size_t>(side.first)];
+    chords_m_.push_back(prior.length_m * prior.chord_ratios[static_cast<std::size_t>(corner - 1)]);
+  }
   const bool is_whole = corners.size() == kNumCorners;
   has_diagonals_ = is_whole && prior.diagonals_sigma_m > 0;
   has_flatness_ = is_whole && prior.flatness_sigma_m > 0;
@@ -106,7 +110,9 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
   for (JacobianMap& by_scale : by_scales) {
     if (by_scale.rows() > 0) by_scale = -all / scale;
   }
-  all.head(num_sides).array() -= prior_.length_m / prior_.side_sigma_m;
+  for (int i = 0; i < num_sides; ++i) {
+    residuals[i] -= chords_m_[static_cast<std::size_t>(i)] / prior_.side_sigma_m;
+  }
   return true;
 }
 

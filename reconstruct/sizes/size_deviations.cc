@@ -121,13 +121,16 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
     size.marker_id = marker.marker_id;
     size.part = marker.part;
     size.num_sides = static_cast<int>(sides.size());
-    const double weight = 1.0 / (size.num_sides * marker.length_m);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
     double shortest_m = std::numeric_limits<double>::infinity(), longest_m = 0.0;
     for (const auto& [a, b] : sides) {
       const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
       shortest_m = std::min(shortest_m, side.norm());
       longest_m = std::max(longest_m, side.norm());
+      const int corner = marker.corners[static_cast<std::size_t>(a)];
+      const double chord_m =
+          marker.length_m * marker.chord_ratios[static_cast<std::size_t>(corner - 1)];
+      const double weight = 1.0 / (size.num_sides * chord_m);
       size.ratio += weight * side.norm();
       gradient.segment<3>(3 * a) -= weight * side.normalized();
       gradient.segment<3>(3 * b) += weight * side.normalized();

@@ -20,7 +20,8 @@ inline constexpr double kMaxSizeSigmas = 4.0;
 // With fewer markers, one bad print could decide the size of the whole part.
 inline constexpr std::size_t kMinMarkersOfPart = 3;
 
-// The mean side of a marker divided by the printed length, and its uncertainty.
+// The mean side of a marker divided by its printed length, or on a curved surface by the chord, and
+// its uncertainty.
 struct MarkerSize {
   int marker_id = 0;
   std::string part;

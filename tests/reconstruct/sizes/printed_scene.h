@@ -20,7 +20,7 @@ class PrintedSceneTest : public testing::Test {
     SyntheticScene noisy = scene_;
     AddNoise({0.05, 0, 0, 200, seed}, &noisy);
     model_ = MakeSceneModel(noisy);
-    return AdjustWithMarkers({}, noisy.layout, {}, &model_);
+    return AdjustWithMarkers(options_, noisy.layout, {}, &model_);
   }
 
   // Of the adjusted model, as a fraction.
@@ -34,6 +34,7 @@ class PrintedSceneTest : public testing::Test {
     return EstimateSim3(x_in_truth, x_in_world).scale - 1.0;
   }
 
+  MarkerAdjustmentOptions options_;
   SyntheticScene scene_;
   Model model_;
 };

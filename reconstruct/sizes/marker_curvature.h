@@ -1,0 +1,25 @@
+// How much shorter the sides of markers are on curved surfaces: a side is printed along the
+// surface, and the corners at its ends are as far apart as its chord.
+
+#pragma once
+
+#include "reconstruct/problem/marker_state.h"
+
+namespace velamap {
+
+struct ChordSummary {
+  double mean_shortening = 0.0;     // of all sides, as a fraction
+  double largest_shortening = 0.0;  // of a marker's mean side
+  int marker_id = 0;                // which has the largest
+};
+
+// Sets the chord ratios of all markers, 1 - (a kappa)^2 / 24 for an arc of the printed length a
+// with the normal curvature kappa along the side. The curvature of a marker follows from the places
+// and tilts of its neighbours on the same part within four sides, by a least-squares fit of a
+// quadratic surface, and its variance is subtracted from its square. Sides stay as printed where
+// a kappa is below 0.1, where there are no neighbours, on parts that the layout calls rigid, whose
+// faces may be flat, and where the neighbours contradict one smooth surface, as at the edge between
+// two walls.
+ChordSummary SetChords(MarkerState* state);
+
+}  // namespace velamap
