@@ -305,5 +305,21 @@ TEST(SurfaceRendererTest, GlareIsTheSameLightEverywhere) {
   EXPECT_LE(cv::norm(difference, cv::NORM_INF), 1);
 }
 
+TEST(SurfaceRendererTest, ShadowsOnlyTakeLight) {
+  const ClipScene scene = MakeClipScene(BoardOptions());
+  SurfaceRenderOptions options = Noiseless();
+  const cv::Mat sunny = RenderClipFrame(scene, options, 3);
+  options.num_shadows = 6;
+  const cv::Mat shaded = RenderClipFrame(scene, options, 3);
+  const cv::Mat brighter = shaded > sunny, darker = shaded < sunny;
+  EXPECT_EQ(cv::countNonZero(brighter.reshape(1)), 0);
+  const double share =
+      cv::countNonZero(darker.reshape(1)) / static_cast<double>(darker.total() * darker.channels());
+  EXPECT_GT(share, 0.02);
+  EXPECT_LT(share, 0.9);
+  EXPECT_GT(cv::sum(shaded)[0], (1 - options.shadow_depth) * cv::sum(sunny)[0]);
+  EXPECT_EQ(cv::norm(shaded, RenderClipFrame(scene, options, 3), cv::NORM_L1), 0);
+}
+
 }  // namespace
 }  // namespace velamap
