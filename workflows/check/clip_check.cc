@@ -139,9 +139,16 @@ class Checker {
   }
 
   void FindParts(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
-                 const std::vector<DatabaseImage>& images) {
+                 std::vector<DatabaseImage> images) {
     ClipFacts& facts = check_.facts;
     if (!clip.is_video) return;
+    for (DatabaseImage& image : images) {  // without ids that are probably misread
+      std::vector<MarkerDetection>& markers = image.detections.markers;
+      const auto is_misread = [&](const MarkerDetection& marker) {
+        return facts.num_frames_of_id.count(marker.marker_id) == 0;
+      };
+      markers.erase(std::remove_if(markers.begin(), markers.end(), is_misread), markers.end());
+    }
     const int num_frames = facts.num_frames_read + facts.num_frames_damaged;
     facts.parts = FindClipParts(images, TimesOf(clip, video, num_frames), layout,
                                 facts.precision ? &*facts.precision : nullptr);
