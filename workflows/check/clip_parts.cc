@@ -23,11 +23,11 @@ constexpr std::size_t kFewMarkersOfFrame = 4;
 constexpr int kMaxPoorBetween = 2;  // frames
 constexpr int kSeenAgain = 2;       // frames that have to see a marker to place it in space
 
-enum class FrameFault { kNone, kFewMarkers, kContradicts, kBlurred };
+enum class FrameFault { kNone, kLacksMarkers, kContradicts, kBlurred };
 
 const char* FaultText(FrameFault fault) {
   switch (fault) {
-    case FrameFault::kFewMarkers:
+    case FrameFault::kLacksMarkers:
       return "fewer than four markers";
     case FrameFault::kContradicts:
       return "contradicts the other frames";
@@ -97,7 +97,7 @@ std::vector<LookedAtFrame> LookAtFrames(const std::vector<DatabaseImage>& images
       frame.time_s = frame.seen->time_s.value_or(frame.time_s);
     }
     if (frame.seen == nullptr || frame.seen->markers.size() < kFewMarkersOfFrame) {
-      frame.fault = FrameFault::kFewMarkers;
+      frame.fault = FrameFault::kLacksMarkers;
     } else if (precision != nullptr &&
                precision->contradicting_images.count(frame.seen->image_name) > 0) {
       frame.fault = FrameFault::kContradicts;
