@@ -110,8 +110,9 @@ void MarkerAdjuster::MeasureChords() {
              std::max(kWorthAWarning, PrintScaleSigma(solution_.options, solution_.weights))) {
     solution_.warnings.push_back(fmt::format(
         "markers that bend with this surface have their corners {:.2f} % closer to each other than "
-        "printed on average, {:.2f} % on marker {}, and the result would be larger by as much: set "
-        "MarkerAdjustment.bent_markers to 1 if they bend",
+        "printed on average, {:.2f} % on marker {}, and the result would be larger by as much; if "
+        "they "
+        "bend, adjust with the option bent_markers",
         100 * chords.mean_shortening, 100 * chords.largest_shortening, chords.marker_id));
   }
 }

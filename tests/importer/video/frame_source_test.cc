@@ -96,7 +96,8 @@ TEST(OpenFrameSource, NamesWhatIsWrong) {
   ExpectThrows<InputError>([&] { OpenFrameSource("", {}); }, {"--image_path"});
   ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); }, {dir.path(), "no images"});
   std::ofstream(dir / "empty.mp4").close();
-  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "empty.mp4", {}); }, {"file is empty; copy it from the camera"});
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "empty.mp4", {}); },
+                           {"file is empty; copy it from the camera"});
   std::ofstream(dir / "text.mp4") << "no video at all";
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "text.mp4", {}); },
                            {dir / "text.mp4", "not a readable video"});

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/cloth/cloth_places.h"
 #include "exporters/sail/section.h"
 #include "importer/base/error.h"
 #include "tests/exporters/compare/example_comparison.h"
@@ -27,7 +28,9 @@ struct DesignExample {
   explicit DesignExample(const MarkerShape& markers) {
     shape.shape = markers;
     shape.frame = ChooseFrame(shape.shape, layout, std::nullopt);
-    shape.sail.sections = ComputeSections(markers, shape.frame, layout, nullptr, section_options);
+    MarkerShape on_cloth = markers;
+    MoveCenters(OffsetsToCloth(markers, layout, shape.frame.up_in_frame), &on_cloth);
+    shape.sail.sections = ComputeSections(on_cloth, shape.frame, layout, nullptr, section_options);
     options.path = "folder/design.ply";
   }
 
