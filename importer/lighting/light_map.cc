@@ -82,15 +82,15 @@ LightMap MapLight(const std::vector<LitPixel>& pixels) {
   return map;
 }
 
-Lighting::Band FindBand(const LightMap& map) {
+FoundBand FindBand(const LightMap& map) {
   constexpr int kAngles = 16, kOffsets = 17;
   constexpr double kLeastOffset = -0.5, kBlur = 0.04, kMinShare = 0.02;
   constexpr double kMinDepth = -3.0, kMaxDepth = 0.8;
   const WeightedMap weighted(map);
   const Eigen::Index n = weighted.lack.size();
   const auto ramp = [](double x) { return std::clamp(0.5 + x / (2.5 * kBlur), 0.0, 1.0); };
-  Lighting::Band best;
-  best << 0, 0, 0, std::log(kBlur), 0;
+  FoundBand best;
+  best.band << 0, 0, 0, std::log(kBlur), 0;
   double most = 0.0;
   Eigen::VectorXd along(n), inside(n);
   for (int a = 0; a < kAngles; ++a) {
@@ -112,11 +112,14 @@ Lighting::Band FindBand(const LightMap& map) {
         const double by_lack = inside.dot(weighted.lack), explained = by_lack * by_lack / own;
         if (explained <= most) continue;
         most = explained;
-        best << angle, offset, std::log(width), std::log(kBlur),
+        best.band << angle, offset, std::log(width), std::log(kBlur),
             std::clamp(1 - std::exp(by_lack / own), kMinDepth, kMaxDepth);
       }
     }
   }
+  double all = 0.0;
+  for (const LightMap::Part& part : map.parts) all += part.weight * part.lack * part.lack;
+  best.unexplained = (weighted.lack.squaredNorm() - most) / std::max(all, 1e-9);
   return best;
 }
 

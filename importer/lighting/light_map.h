@@ -30,8 +30,13 @@ struct LightMap {
 
 LightMap MapLight(const std::vector<LitPixel>& pixels);
 
+struct FoundBand {
+  Lighting::Band band;
+  double unexplained = 1.0;  // share of the map's squares
+};
+
 // The band that explains the map best beside a light that is even, slopes and curves. The map must
 // not be empty.
-Lighting::Band FindBand(const LightMap& map);
+FoundBand FindBand(const LightMap& map);
 
 }  // namespace velamap

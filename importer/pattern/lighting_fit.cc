@@ -172,17 +172,36 @@ bool TakeIfBetter(Lighting start, Lighting* lighting, PatternProblem* problem,
 
 Lighting FitLighting(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kExcess = 2.5, kAmplitude = 0.004;
+  // The ink of a bad print differs from cell to cell, which light explains in small part only.
+  constexpr double kMaxUnexplained = 0.4;
+  // Two bands may share the work, and the search for a band is coarse.
+  constexpr double kMaxUnexplainedByBand = 0.65;
   constexpr int kMaxBands = 2;
+  LightMap map = MapLight(LitPixels(*problem, minimum->parameters));
+  const double excess = map.excess;
+  const auto is_uneven = [&] { return map.excess > kExcess && map.amplitude > kAmplitude; };
+  if (!is_uneven()) return {};
+  const PatternModel even_model = problem->model;
+  const PatternMinimum even_minimum = *minimum;
   Lighting lighting;
-  while (lighting.num_bands() < kMaxBands) {
-    const LightMap map = MapLight(LitPixels(*problem, minimum->parameters));
-    if (map.excess < kExcess || map.amplitude < kAmplitude) break;
+  while (is_uneven() && lighting.num_bands() < kMaxBands) {
+    const FoundBand found = FindBand(map);
+    if (found.unexplained > kMaxUnexplainedByBand) break;
     Lighting with_band = lighting;
-    with_band.AddBand(FindBand(map));
-    if (TakeIfBetter(with_band, &lighting, problem, minimum)) continue;
-    // What falls off along the marker without an edge.
-    if (lighting.IsEven()) TakeIfBetter(lighting, &lighting, problem, minimum);
-    break;
+    with_band.AddBand(found.band);
+    if (!TakeIfBetter(with_band, &lighting, problem, minimum)) {
+      // What falls off along the marker without an edge.
+      if (lighting.IsEven()) TakeIfBetter(lighting, &lighting, problem, minimum);
+      break;
+    }
+    map = MapLight(LitPixels(*problem, minimum->parameters));
+  }
+  if (lighting.IsEven()) return lighting;
+  map = MapLight(LitPixels(*problem, minimum->parameters));
+  if (map.excess - 1 > kMaxUnexplained * (excess - 1)) {
+    problem->model = even_model;
+    *minimum = even_minimum;
+    return {};
   }
   return lighting;
 }
