@@ -190,7 +190,7 @@ std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
 }
 
 std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& points) {
-  constexpr int kCubic = 3, kStepsPerPoint = 8;
+  constexpr int kEdgeLineDegree = 3, kStepsPerPoint = 8;
   if (points.size() < 2) return points;
   const auto n = static_cast<Eigen::Index>(points.size());
   const std::vector<double> lengths_m = ChordLengths(points);
@@ -199,7 +199,7 @@ std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& poin
       Eigen::Map<const Eigen::RowVectorXd>(lengths_m.data(), n) / lengths_m.back();
   using Spline = Eigen::Spline<double, 3>;
   const Spline curve = Eigen::SplineFitting<Spline>::Interpolate(
-      places_m, std::min<Eigen::Index>(kCubic, n - 1), places);
+      places_m, std::min<Eigen::Index>(kEdgeLineDegree, n - 1), places);
   Polyline smooth;
   const int num_steps = kStepsPerPoint * static_cast<int>(n - 1);
   for (int k = 0; k <= num_steps; ++k) {

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kCubic = 3;
+constexpr int kEdgeDegree = 3;
 
 // One parameter of the places on an edge as a function of the other.
 struct OutlineCurve {
@@ -39,7 +39,7 @@ OutlineCurve FitCurve(std::vector<Eigen::Vector2d> places, CurveFit fit) {
   places.erase(last, places.end());
   OutlineCurve curve;
   const auto n = static_cast<Eigen::Index>(places.size());
-  curve.degree = std::min<int>(kCubic, static_cast<int>(n) - 1);
+  curve.degree = std::min<int>(kEdgeDegree, static_cast<int>(n) - 1);
   if (n > 1) {
     curve.first = places.front()[0];
     curve.last = places.back()[0];
@@ -147,9 +147,9 @@ class OutlineMap {
 // outline that is curved.
 SplineSurface WithoutPoles(const SplineSurface& surface) {
   SplineSurface result = surface;
-  if (result.degree_v < kCubic) {
-    result.degree_v = kCubic;
-    result.knots_v.resize(2 * (kCubic + 1) + 3);
+  if (result.degree_v < kEdgeDegree) {
+    result.degree_v = kEdgeDegree;
+    result.knots_v.resize(2 * (kEdgeDegree + 1) + 3);
     result.knots_v << 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1;
   }
   return result;
