@@ -34,7 +34,7 @@ void CheckEdges(const MarkerShape& shape, const SurfaceEdges& edges) {
   if (box.isEmpty()) return;
   const double size_m = box.diagonal().norm();
   for (const auto* edge : {&edges.luff, &edges.leech, &edges.foot, &edges.head}) {
-    for (const Eigen::Vector3d& x_m : *edge) {
+    for (const Eigen::Vector3d& x_m : edge->points_m) {
       const double distance_m = box.exteriorDistance(x_m);
       if (distance_m <= size_m) continue;
       throw InputError(fmt::format(

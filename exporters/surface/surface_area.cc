@@ -59,8 +59,10 @@ void CheckArea(const SortedInput& sorted, const SurfaceOptions& ends,
     is_extended = is_extended || line.luff_offset_m.value_or(0.0) > 0 ||
                   line.leech_offset_m.value_or(0.0) > 0;
   }
-  const bool has_edges =
-      !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() || !edges.head.empty();
+  bool has_edges = false;
+  for (const auto* edge : {&edges.luff, &edges.leech, &edges.foot, &edges.head}) {
+    has_edges = has_edges || !edge->points_m.empty();
+  }
   const double max_ratio = is_extended || has_edges ? kMaxAreaRatioWithEdges : kMaxAreaRatio;
   const double area_m2 = SurfaceArea(surface), ruled_area_m2 = RuledArea(sorted.lines);
   if (area_m2 <= max_ratio * ruled_area_m2) return;

@@ -92,7 +92,7 @@ void WriteSurfaceEdgesCsv(const FittedSurface& surface, std::ostream& out) {
 
 SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
   SurfaceEdges edges;
-  const std::map<std::string, std::vector<Eigen::Vector3d>*> edge_of = {
+  const std::map<std::string, SurfaceEdge*> edge_of = {
       {"luff", &edges.luff}, {"leech", &edges.leech}, {"foot", &edges.foot}, {"head", &edges.head}};
   for (const CsvRecord& record : ReadTable(in, kEdgeColumns, name)) {
     const auto edge = edge_of.find(record.fields[0]);
@@ -104,12 +104,12 @@ SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
     const auto coordinate = [&](std::size_t column) {
       return ReadLength(record, column, kEdgeColumns, name);
     };
-    edge->second->push_back({coordinate(1), coordinate(2), coordinate(3)});
+    edge->second->points_m.push_back({coordinate(1), coordinate(2), coordinate(3)});
   }
-  for (const auto& [edge, points] : edge_of) {
-    if (points->size() == 1) {
+  for (const auto& [name_of_edge, edge] : edge_of) {
+    if (edge->points_m.size() == 1) {
       throw InputError(
-          fmt::format("{}: the {} edge has one point; it needs two or more", name, edge));
+          fmt::format("{}: the {} edge has one point; it needs two or more", name, name_of_edge));
     }
   }
   return edges;

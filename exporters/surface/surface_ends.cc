@@ -39,24 +39,21 @@ constexpr const char* kEdgeNames[] = {"luff", "leech", "foot", "head"};
 // What options, input and lines have of one edge.
 struct EdgeMembers {
   const char* name;
-  std::vector<Eigen::Vector3d> SurfaceEdges::*points;
-  double SurfaceEdges::*beyond_m;
-  bool SurfaceEdges::*is_seen;
+  SurfaceEdge SurfaceEdges::*edge;
   std::optional<double> SurfaceOptions::*extension_mm;
   std::string SurfaceInput::*note;
 };
 
 // Takes the points of the layout, where the options do not say where the edge is. Returns whether
 // the layout decides.
-bool TakePoints(const EdgeMembers& edge, const SurfaceInput& input, const SurfaceOptions& options,
-                double size_m, SortedInput* sorted, SurfaceOptions* ends) {
-  if (!(options.edges.*edge.points).empty() || options.*edge.extension_mm) return false;
-  if (!(input.*edge.note).empty()) sorted->notes.push_back(input.*edge.note);
-  ends->edges.*edge.points = input.edges.*edge.points;
-  ends->edges.*edge.is_seen = input.edges.*edge.is_seen;
-  if (IsWithinReach(input.edges.*edge.beyond_m, size_m, edge.name, sorted)) {
-    ends->edges.*edge.beyond_m = input.edges.*edge.beyond_m;
-  }
+bool TakePoints(const EdgeMembers& members, const SurfaceInput& input,
+                const SurfaceOptions& options, double size_m, SortedInput* sorted,
+                SurfaceOptions* ends) {
+  SurfaceEdge& edge = ends->edges.*members.edge;
+  if (!edge.points_m.empty() || options.*members.extension_mm) return false;
+  if (!(input.*members.note).empty()) sorted->notes.push_back(input.*members.note);
+  edge = input.edges.*members.edge;
+  if (!IsWithinReach(edge.beyond_m, size_m, members.name, sorted)) edge.beyond_m = 0.0;
   return true;
 }
 
@@ -94,21 +91,20 @@ void EndHeight(const EdgeMembers& edge, const std::optional<double>& offset_m, b
 SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& options,
                            SortedInput* sorted) {
   SurfaceOptions ends = options;
-  EndSide({"luff", &SurfaceEdges::luff, &SurfaceEdges::beyond_luff_m, &SurfaceEdges::luff_is_seen,
-           &SurfaceOptions::luff_extension_mm, &SurfaceInput::luff_note},
-          &SurfaceLine::luff_offset_m, input, options, sorted, &ends);
   EndSide(
-      {"leech", &SurfaceEdges::leech, &SurfaceEdges::beyond_leech_m, &SurfaceEdges::leech_is_seen,
-       &SurfaceOptions::leech_extension_mm, &SurfaceInput::leech_note},
-      &SurfaceLine::leech_offset_m, input, options, sorted, &ends);
-  EndHeight({"foot", &SurfaceEdges::foot, &SurfaceEdges::beyond_foot_m, &SurfaceEdges::foot_is_seen,
-             &SurfaceOptions::foot_extension_mm, &SurfaceInput::foot_note},
-            input.foot_offset_m, input.lines.front().name == sorted->lines.front().name, input,
-            options, sorted, &ends);
-  EndHeight({"head", &SurfaceEdges::head, &SurfaceEdges::beyond_head_m, &SurfaceEdges::head_is_seen,
-             &SurfaceOptions::head_extension_mm, &SurfaceInput::head_note},
-            input.head_offset_m, input.lines.back().name == sorted->lines.back().name, input,
-            options, sorted, &ends);
+      {"luff", &SurfaceEdges::luff, &SurfaceOptions::luff_extension_mm, &SurfaceInput::luff_note},
+      &SurfaceLine::luff_offset_m, input, options, sorted, &ends);
+  EndSide({"leech", &SurfaceEdges::leech, &SurfaceOptions::leech_extension_mm,
+           &SurfaceInput::leech_note},
+          &SurfaceLine::leech_offset_m, input, options, sorted, &ends);
+  EndHeight(
+      {"foot", &SurfaceEdges::foot, &SurfaceOptions::foot_extension_mm, &SurfaceInput::foot_note},
+      input.foot_offset_m, input.lines.front().name == sorted->lines.front().name, input, options,
+      sorted, &ends);
+  EndHeight(
+      {"head", &SurfaceEdges::head, &SurfaceOptions::head_extension_mm, &SurfaceInput::head_note},
+      input.head_offset_m, input.lines.back().name == sorted->lines.back().name, input, options,
+      sorted, &ends);
   return ends;
 }
 
@@ -137,11 +133,11 @@ void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
   const SurfaceEdges& given = ends.edges;
   const std::map<std::string, bool> continued = {
       {"luff",
-       given.beyond_luff_m > 0 || goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},
+       given.luff.beyond_m > 0 || goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},
       {"leech",
-       given.beyond_leech_m > 0 || goes_on(ends.leech_extension_mm, &SurfaceLine::leech_offset_m)},
-      {"foot", given.beyond_foot_m > 0 || goes_on(ends.foot_extension_mm, nullptr)},
-      {"head", given.beyond_head_m > 0 || goes_on(ends.head_extension_mm, nullptr)}};
+       given.leech.beyond_m > 0 || goes_on(ends.leech_extension_mm, &SurfaceLine::leech_offset_m)},
+      {"foot", given.foot.beyond_m > 0 || goes_on(ends.foot_extension_mm, nullptr)},
+      {"head", given.head.beyond_m > 0 || goes_on(ends.head_extension_mm, nullptr)}};
   for (const char* name : kEdgeNames) {
     std::vector<double> sigmas_m;
     for (const SurfaceEdgePoint& point : edges) {

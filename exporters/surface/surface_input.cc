@@ -60,22 +60,16 @@ struct EdgeOfPlaces {
   const char* name;
   bool is_side;  // luff or leech
   const ClothEdge& in_layout;
-  std::vector<Eigen::Vector3d>& points_m;
-  double& beyond_m;
-  bool& is_seen;
+  SurfaceEdge& edge;
   std::string& note;
 };
 
 std::vector<EdgeOfPlaces> EdgesOfPlaces(const LayoutPart& part, SurfaceInput* input) {
   SurfaceEdges& edges = input->edges;
-  return {{"luff", true, part.edges.luff, edges.luff, edges.beyond_luff_m, edges.luff_is_seen,
-           input->luff_note},
-          {"leech", true, part.edges.leech, edges.leech, edges.beyond_leech_m, edges.leech_is_seen,
-           input->leech_note},
-          {"foot", false, part.edges.foot, edges.foot, edges.beyond_foot_m, edges.foot_is_seen,
-           input->foot_note},
-          {"head", false, part.edges.head, edges.head, edges.beyond_head_m, edges.head_is_seen,
-           input->head_note}};
+  return {{"luff", true, part.edges.luff, edges.luff, input->luff_note},
+          {"leech", true, part.edges.leech, edges.leech, input->leech_note},
+          {"foot", false, part.edges.foot, edges.foot, input->foot_note},
+          {"head", false, part.edges.head, edges.head, input->head_note}};
 }
 
 // The points along an edge that the layout names, by its vertical line or one by one.
@@ -90,9 +84,9 @@ std::vector<CornerId> NamedPoints(const EdgeOfPlaces& edge, const LayoutPart& pa
 
 // Sets the points of the edge that the shape has; fewer than two are no edge, which is noted.
 // Markers at points where the cloth ends are removed from `others`.
-void SetPoints(const MarkerShape& shape, const LayoutPart& part, EdgeOfPlaces edge,
+void SetPoints(const MarkerShape& shape, const LayoutPart& part, const EdgeOfPlaces& places,
                std::set<int>* others) {
-  const std::vector<CornerId> named = NamedPoints(edge, part);
+  const std::vector<CornerId> named = NamedPoints(places, part);
   if (named.empty()) return;
   std::vector<Eigen::Vector3d> points_m;
   for (const CornerId& point : named) {
@@ -101,16 +95,17 @@ void SetPoints(const MarkerShape& shape, const LayoutPart& part, EdgeOfPlaces ed
     points_m.push_back(*marker->x_in_shape_m[static_cast<std::size_t>(point.corner)]);
   }
   if (points_m.size() < 2) {
-    const std::string& line = edge.in_layout.line;
-    edge.note =
+    const std::string& line = places.in_layout.line;
+    places.note =
         fmt::format("{}: {} of {} are whole, 2 needed; the surface ends at the outer markers{}",
-                    edge.name, points_m.size(),
+                    places.name, points_m.size(),
                     line.empty() ? "the markers of its points" : "the markers of its line " + line,
-                    edge.is_side ? " of the other lines" : "");
+                    places.is_side ? " of the other lines" : "");
     return;
   }
+  SurfaceEdge& edge = places.edge;
   edge.points_m = points_m;
-  edge.beyond_m = OffsetOf(edge.in_layout, 0).value_or(0.0);
+  edge.beyond_m = OffsetOf(places.in_layout, 0).value_or(0.0);
   for (const CornerId& point : named) {
     const bool is_other = others->count(point.marker_id) > 0;
     if (point.corner == 0 && edge.beyond_m <= 0) others->erase(point.marker_id);
@@ -129,8 +124,8 @@ void OrderFromLuffToLeech(SurfaceInput* input) {
     const std::vector<Eigen::Vector3d> points_m = PresentPoints(line);
     if (points_m.size() >= 2) aft += (points_m.back() - points_m.front()).normalized();
   }
-  for (auto* edge : {&input->edges.foot, &input->edges.head}) {
-    if (RunsAgainst(*edge, aft)) std::reverse(edge->begin(), edge->end());
+  for (auto* points_m : {&input->edges.foot.points_m, &input->edges.head.points_m}) {
+    if (RunsAgainst(*points_m, aft)) std::reverse(points_m->begin(), points_m->end());
   }
 }
 
@@ -155,9 +150,9 @@ void OrderFromFootToHead(const MarkerShape& shape, const LayoutPart& part,
   if (!up) return;
   const std::optional<Eigen::Vector3d> along = LinesUp(shape, part);
   if (along && PointsDown(*along, *up)) std::reverse(input->lines.begin(), input->lines.end());
-  for (auto* edge : {&input->edges.luff, &input->edges.leech}) {
-    if (edge->empty()) continue;
-    if (PointsDown(edge->back() - edge->front(), *up)) std::reverse(edge->begin(), edge->end());
+  for (auto* points_m : {&input->edges.luff.points_m, &input->edges.leech.points_m}) {
+    if (points_m->empty() || !PointsDown(points_m->back() - points_m->front(), *up)) continue;
+    std::reverse(points_m->begin(), points_m->end());
   }
 }
 
@@ -182,8 +177,8 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
   for (const MarkerLine& line : part.vertical) {
     others.insert(line.marker_ids.begin(), line.marker_ids.end());
   }
-  for (const EdgeOfPlaces& edge : EdgesOfPlaces(part, &input)) {
-    SetPoints(shape, part, edge, &others);
+  for (const EdgeOfPlaces& places : EdgesOfPlaces(part, &input)) {
+    SetPoints(shape, part, places, &others);
   }
   for (const int marker_id : others) {
     if (on_lines.count(marker_id) > 0) continue;

@@ -33,15 +33,18 @@ struct SurfaceLine {
   std::optional<double> luff_offset_m{}, leech_offset_m{};
 };
 
-// Edges of the sail, measured or from the design, as polylines in the shape frame (m): luff and
-// leech from foot to head, foot and head from luff to leech. An unknown edge is empty.
-struct SurfaceEdges {
-  std::vector<Eigen::Vector3d> luff, leech, foot, head;
-  // How far beyond these points the cloth ends, along it, m.
-  double beyond_luff_m = 0.0, beyond_leech_m = 0.0, beyond_foot_m = 0.0, beyond_head_m = 0.0;
+// An edge of the sail, measured or from the design.
+struct SurfaceEdge {
+  std::vector<Eigen::Vector3d> points_m;  // a polyline in the shape frame; empty if unknown
+  double beyond_m = 0.0;                  // how far beyond these points the cloth ends, along it
   // Whether the points are those of markers through which the surface goes anyway: they say where
   // it ends, not where it is.
-  bool luff_is_seen = false, leech_is_seen = false, foot_is_seen = false, head_is_seen = false;
+  bool is_seen = false;
+};
+
+// Luff and leech from foot to head, foot and head from luff to leech.
+struct SurfaceEdges {
+  SurfaceEdge luff, leech, foot, head;
 };
 
 struct SurfaceInput {

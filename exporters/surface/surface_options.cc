@@ -38,11 +38,14 @@ OptionGroup DescribeOptions(SurfaceOptions* options) {
 
 void SurfaceOptions::Check() const {
   CheckRanges(*this);
-  CheckEdge(edges.luff, "luff", luff_extension_mm, OptionName(&SurfaceOptions::luff_extension_mm));
-  CheckEdge(edges.leech, "leech", leech_extension_mm,
+  CheckEdge(edges.luff.points_m, "luff", luff_extension_mm,
+            OptionName(&SurfaceOptions::luff_extension_mm));
+  CheckEdge(edges.leech.points_m, "leech", leech_extension_mm,
             OptionName(&SurfaceOptions::leech_extension_mm));
-  CheckEdge(edges.foot, "foot", foot_extension_mm, OptionName(&SurfaceOptions::foot_extension_mm));
-  CheckEdge(edges.head, "head", head_extension_mm, OptionName(&SurfaceOptions::head_extension_mm));
+  CheckEdge(edges.foot.points_m, "foot", foot_extension_mm,
+            OptionName(&SurfaceOptions::foot_extension_mm));
+  CheckEdge(edges.head.points_m, "head", head_extension_mm,
+            OptionName(&SurfaceOptions::head_extension_mm));
 }
 
 }  // namespace velamap

@@ -56,8 +56,8 @@ void CheckExtension(const SurfaceOptions& options,
 // Of a point of a row that is no marker.
 bool IsSeen(const SurfaceEdges& edges, const std::vector<SurfaceRow>& rows, std::size_t row,
             std::size_t point) {
-  if (rows[row].is_edge) return row == 0 ? edges.foot_is_seen : edges.head_is_seen;
-  return point == 0 ? edges.luff_is_seen : edges.leech_is_seen;
+  if (rows[row].is_edge) return row == 0 ? edges.foot.is_seen : edges.head.is_seen;
+  return point == 0 ? edges.luff.is_seen : edges.leech.is_seen;
 }
 
 // Whether luff and leech are given, or offset from the lines.
@@ -67,10 +67,10 @@ void SetKnownSides(const std::vector<SurfaceLine>& lines, const SurfaceOptions& 
     return std::any_of(lines.begin(), lines.end(),
                        [&](const SurfaceLine& line) { return (line.*offset_m).has_value(); });
   };
-  parameters->luff.is_known =
-      !options.edges.luff.empty() || options.luff_extension_mm || has(&SurfaceLine::luff_offset_m);
-  parameters->leech.is_known = !options.edges.leech.empty() || options.leech_extension_mm ||
-                               has(&SurfaceLine::leech_offset_m);
+  parameters->luff.is_known = !options.edges.luff.points_m.empty() || options.luff_extension_mm ||
+                              has(&SurfaceLine::luff_offset_m);
+  parameters->leech.is_known = !options.edges.leech.points_m.empty() ||
+                               options.leech_extension_mm || has(&SurfaceLine::leech_offset_m);
 }
 
 // The place of a point of an edge, by the ends of the rows beside it.
@@ -91,8 +91,7 @@ Eigen::Vector2d PlaceBeside(const std::vector<SurfaceObservation>& ends, const E
   return place;
 }
 
-void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m, bool is_seen,
-                 std::size_t ObservedRow::*end_idx, ObservedEdge* edge,
+void AddPointsOf(const SurfaceEdge& given, std::size_t ObservedRow::*end_idx, ObservedEdge* edge,
                  SurfaceParameters* parameters) {
   constexpr double kSamePlace_m = 1e-6;
   std::vector<SurfaceObservation> ends;
@@ -100,14 +99,14 @@ void AddPointsOf(const std::vector<Eigen::Vector3d>& points, double beyond_m, bo
     ends.push_back(parameters->observations[row.*end_idx]);
   }
   edge->first_idx = parameters->observations.size();
-  edge->beyond_m = beyond_m;
-  for (const Eigen::Vector3d& x : SomePoints(points)) {
+  edge->beyond_m = given.beyond_m;
+  for (const Eigen::Vector3d& x : SomePoints(given.points_m)) {
     const bool is_end = std::any_of(ends.begin(), ends.end(), [&](const SurfaceObservation& end) {
       return (end.Center() - x).norm() < kSamePlace_m;
     });
     if (is_end) continue;
     const Eigen::Vector2d uv = PlaceBeside(ends, x);
-    parameters->observations.push_back({-1, "", uv[0], uv[1], {{x, uv[0], uv[1]}}, is_seen});
+    parameters->observations.push_back({-1, "", uv[0], uv[1], {{x, uv[0], uv[1]}}, given.is_seen});
   }
   edge->num_points = parameters->observations.size() - edge->first_idx;
 }
@@ -131,8 +130,8 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
   }
   const std::vector<SurfaceRow> rows = MakeSurfaceRows(lines, options, &parameters.notes);
   const SurfaceEdges& edges = options.edges;
-  parameters.below_m = edges.beyond_foot_m + kMPerMm * options.foot_extension_mm.value_or(0.0);
-  parameters.above_m = edges.beyond_head_m + kMPerMm * options.head_extension_mm.value_or(0.0);
+  parameters.below_m = edges.foot.beyond_m + kMPerMm * options.foot_extension_mm.value_or(0.0);
+  parameters.above_m = edges.head.beyond_m + kMPerMm * options.head_extension_mm.value_or(0.0);
   std::vector<double> heights_m = {parameters.below_m};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
@@ -179,10 +178,8 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
 }
 
 void AddEdgePoints(const SurfaceEdges& edges, SurfaceParameters* parameters) {
-  AddPointsOf(edges.luff, edges.beyond_luff_m, edges.luff_is_seen, &ObservedRow::first_idx,
-              &parameters->luff, parameters);
-  AddPointsOf(edges.leech, edges.beyond_leech_m, edges.leech_is_seen, &ObservedRow::last_idx,
-              &parameters->leech, parameters);
+  AddPointsOf(edges.luff, &ObservedRow::first_idx, &parameters->luff, parameters);
+  AddPointsOf(edges.leech, &ObservedRow::last_idx, &parameters->leech, parameters);
 }
 
 }  // namespace velamap

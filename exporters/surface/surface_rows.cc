@@ -102,16 +102,17 @@ double BeyondMarkers(const std::optional<double>& extension_mm,
   return extension_mm ? kMPerMm * *extension_mm : offset_m.value_or(0.0);
 }
 
-// `edge` is the curve that SmoothEdge() makes, and the cloth ends `beyond_m` farther out.
-LineEnd MakeLineEnd(const Polyline& edge, double beyond_m, double extension_m, double missing_m,
+// `edge` has the curve that SmoothEdge() makes.
+LineEnd MakeLineEnd(const SurfaceEdge& edge, double extension_m, double missing_m,
                     const Eigen::Vector3d& last, const Eigen::Vector3d& before_last) {
-  if (edge.empty()) return {missing_m + extension_m, missing_m + extension_m, std::nullopt};
+  if (edge.points_m.empty())
+    return {missing_m + extension_m, missing_m + extension_m, std::nullopt};
   const Eigen::Vector3d direction = (last - before_last).normalized();
-  const Eigen::Vector3d x = NearestToRay(edge, last, direction);
+  const Eigen::Vector3d x = NearestToRay(edge.points_m, last, direction);
   const double length_m = (x - last).norm();
   // The marker lies on the edge, or beyond a curve through a few points of a round one.
-  if (direction.dot(x - last) < 1e-6) return {beyond_m, beyond_m, std::nullopt};
-  return {length_m + beyond_m, beyond_m, x};
+  if (direction.dot(x - last) < 1e-6) return {edge.beyond_m, edge.beyond_m, std::nullopt};
+  return {length_m + edge.beyond_m, edge.beyond_m, x};
 }
 
 SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
@@ -123,14 +124,12 @@ SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
   const double place_spacing = lengths.back() / (present.places.back() - present.places.front());
   const std::size_t n = present.points.size();
   const LineEnd luff =
-      MakeLineEnd(options.edges.luff, options.edges.beyond_luff_m,
-                  BeyondMarkers(options.luff_extension_mm, line.luff_offset_m),
+      MakeLineEnd(options.edges.luff, BeyondMarkers(options.luff_extension_mm, line.luff_offset_m),
                   place_spacing * present.places.front(), present.points[0], present.points[1]);
-  const LineEnd leech =
-      MakeLineEnd(options.edges.leech, options.edges.beyond_leech_m,
-                  BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
-                  place_spacing * (line.markers.size() - 1 - present.places.back()),
-                  present.points[n - 1], present.points[n - 2]);
+  const LineEnd leech = MakeLineEnd(
+      options.edges.leech, BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
+      place_spacing * (line.markers.size() - 1 - present.places.back()), present.points[n - 1],
+      present.points[n - 2]);
   SurfaceRow row{line.name, false, present.marker_ids, present.points, {}};
   row.before_m = luff.after_point_m;
   row.after_m = leech.after_point_m;
@@ -237,16 +236,17 @@ std::vector<SurfaceRow> MakeSurfaceRows(const std::vector<SurfaceLine>& lines,
                                         const SurfaceOptions& options,
                                         std::vector<std::string>* notes) {
   SurfaceOptions smooth = options;
-  for (auto* edge : {&smooth.edges.luff, &smooth.edges.leech})
-    *edge = SmoothEdge(SomePoints(*edge));
+  for (auto* edge : {&smooth.edges.luff, &smooth.edges.leech}) {
+    edge->points_m = SmoothEdge(SomePoints(edge->points_m));
+  }
   std::vector<SurfaceRow> rows;
   for (const SurfaceLine& line : lines) rows.push_back(MakeRow(line, smooth, notes));
-  const SurfaceEdges& edges = options.edges;
-  if (!edges.foot.empty()) {
-    rows.insert(rows.begin(), MakeEdgeRow("foot", SomePoints(edges.foot), rows.front()));
+  const Polyline &foot = options.edges.foot.points_m, &head = options.edges.head.points_m;
+  if (!foot.empty()) {
+    rows.insert(rows.begin(), MakeEdgeRow("foot", SomePoints(foot), rows.front()));
   }
-  if (!edges.head.empty()) {
-    rows.push_back(MakeEdgeRow("head", SomePoints(edges.head), rows.back()));
+  if (!head.empty()) {
+    rows.push_back(MakeEdgeRow("head", SomePoints(head), rows.back()));
   }
   return rows;
 }

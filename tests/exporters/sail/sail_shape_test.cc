@@ -239,7 +239,7 @@ TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
 
 TEST(SailShape, RefusesEdgesInAnotherUnitOrFrame) {
   SailOptions options;
-  options.surface.edges.luff = {{0, 0, 0}, {0, 0, 5000}};
+  options.surface.edges.luff.points_m = {{0, 0, 0}, {0, 0, 5000}};
   const SailShape refused = Compute(ExampleSail(), options);
   EXPECT_THAT(refused.surfaces, IsEmpty());
   EXPECT_EQ(refused.sections.sections.size(), 3u);
@@ -251,7 +251,7 @@ TEST(SailShape, RefusesEdgesInAnotherUnitOrFrame) {
 
 TEST(SailShape, GivenEdgesAreThoseOfTheFirstSail) {
   SailOptions options;
-  options.surface.edges.luff = {{-0.2, 0, 0}, {-0.2, 0, 4}};
+  options.surface.edges.luff.points_m = {{-0.2, 0, 0}, {-0.2, 0, 4}};
   const SailShape with_edge = Compute(TwoSails(), options), without = Compute(TwoSails());
   ASSERT_EQ(with_edge.surfaces.size(), 2u);
   EXPECT_EQ(with_edge.surfaces[0].area_m2, Compute(ExampleSail(), options).surfaces[0].area_m2);
@@ -266,10 +266,10 @@ TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
   };
   const SurfaceEdges edges =
       read("# measured\nedge,x,y,z\nluff,0,0,0\nfoot,0,0,0\nluff,0,0.5,4\nfoot,3,0,0\n");
-  ASSERT_EQ(edges.luff.size(), 2u);
-  EXPECT_EQ(edges.luff[1], Eigen::Vector3d(0, 0.5, 4));
-  EXPECT_EQ(edges.foot.size(), 2u);
-  EXPECT_THAT(edges.head, IsEmpty());
+  ASSERT_EQ(edges.luff.points_m.size(), 2u);
+  EXPECT_EQ(edges.luff.points_m[1], Eigen::Vector3d(0, 0.5, 4));
+  EXPECT_EQ(edges.foot.points_m.size(), 2u);
+  EXPECT_THAT(edges.head.points_m, IsEmpty());
   const std::string header = "edge,x,y,z\n";
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"", "expected the header"},

@@ -15,7 +15,8 @@ constexpr double kPlaces[] = {0.02, 0.3, 0.5, 0.8, 0.97};
 
 TEST(SurfaceDependence, SharesOfTheMarkersSumToOneAndTheVariancesToThatOfTheSurface) {
   SurfaceOptions with_edge;
-  for (int i = 0; i <= 10; ++i) with_edge.edges.luff.push_back(TwistedSail(-0.01, 0.1 * i));
+  for (int i = 0; i <= 10; ++i)
+    with_edge.edges.luff.points_m.push_back(TwistedSail(-0.01, 0.1 * i));
   for (const SurfaceOptions& options : {SurfaceOptions(), with_edge}) {
     const FittedSurface fit = FitSurface(NoisySail(), options);
     EXPECT_EQ(fit.points.size(), 4 * 63u);

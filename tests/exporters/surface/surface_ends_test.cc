@@ -60,16 +60,17 @@ TEST(SurfaceEnds, ReachesTheEdgesThatAreGiven) {
   const auto inner = [](double u, double v) { return TwistedSail(0.08 + 0.84 * u, 0.1 + 0.8 * v); };
   SurfaceOptions options;
   for (int k = 0; k <= 10; ++k) {
-    options.edges.luff.push_back(TwistedSail(0, k / 10.0));
-    options.edges.leech.push_back(TwistedSail(1, k / 10.0));
-    options.edges.foot.push_back(TwistedSail(k / 10.0, 0));
-    options.edges.head.push_back(TwistedSail(k / 10.0, 1));
+    options.edges.luff.points_m.push_back(TwistedSail(0, k / 10.0));
+    options.edges.leech.points_m.push_back(TwistedSail(1, k / 10.0));
+    options.edges.foot.points_m.push_back(TwistedSail(k / 10.0, 0));
+    options.edges.head.points_m.push_back(TwistedSail(k / 10.0, 1));
   }
   const auto fitted = FitSurface(AsExact(MarkersOn(inner, 7, 8)), options);
   const double true_area_m2 = SurfaceArea(FitSurface(MarkersOn(TwistedSail, 16, 16)).surface);
   EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.005 * true_area_m2);
   EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
-  for (const auto& edge : {options.edges.luff, options.edges.leech, options.edges.foot}) {
+  for (const auto& edge :
+       {options.edges.luff.points_m, options.edges.leech.points_m, options.edges.foot.points_m}) {
     for (const SurfaceFoot& foot : ProjectOnSurface(fitted.surface, edge)) {
       EXPECT_LT(std::hypot(foot.distance_m, foot.beyond_edge_m), 0.01);
     }

@@ -43,15 +43,15 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   // Markers 1 and 8 on the leech.
   part.edges.leech.line = "v1";
   const SurfaceInput with_leech = CollectSurfaceInput(shape, part);
-  ASSERT_EQ(with_leech.edges.leech.size(), 2u);
-  EXPECT_EQ(with_leech.edges.leech[1], Eigen::Vector3d(8, 0, 0));
+  ASSERT_EQ(with_leech.edges.leech.points_m.size(), 2u);
+  EXPECT_EQ(with_leech.edges.leech.points_m[1], Eigen::Vector3d(8, 0, 0));
   ASSERT_EQ(with_leech.markers.size(), 1u);
   EXPECT_EQ(with_leech.markers[0].marker_id, 5);
   EXPECT_EQ(with_leech.leech_note, "");
   // One of them is no edge, and that is said.
   shape.markers.erase(shape.markers.begin() + 4);
   const SurfaceInput one = CollectSurfaceInput(shape, part);
-  EXPECT_TRUE(one.edges.leech.empty());
+  EXPECT_TRUE(one.edges.leech.points_m.empty());
   EXPECT_EQ(one.leech_note,
             "leech: 1 of the markers of its line v1 are whole, 2 needed; the surface ends at the "
             "outer markers of the other lines");
@@ -78,18 +78,18 @@ TEST(SurfaceInput, TakesPointsAndLinesAlongTheEdges) {
   part.edges.head.line = "h2";
   part.edges.head.offsets_m = {0.25};
   const SurfaceInput input = CollectSurfaceInput(shape, part, Eigen::Vector3d::UnitZ());
-  ASSERT_EQ(input.edges.luff.size(), 2u);  // from foot to head; 99 is missing
-  EXPECT_NEAR((input.edges.luff[0] - Eigen::Vector3d(0.9, 0, -0.1)).norm(), 0, 1e-12);
-  EXPECT_EQ(input.edges.beyond_luff_m, 0.03);
+  ASSERT_EQ(input.edges.luff.points_m.size(), 2u);  // from foot to head; 99 is missing
+  EXPECT_NEAR((input.edges.luff.points_m[0] - Eigen::Vector3d(0.9, 0, -0.1)).norm(), 0, 1e-12);
+  EXPECT_EQ(input.edges.luff.beyond_m, 0.03);
   EXPECT_FALSE(input.lines[0].luff_offset_m);
-  EXPECT_TRUE(input.edges.luff_is_seen);
-  EXPECT_FALSE(input.edges.foot_is_seen);
-  ASSERT_EQ(input.edges.foot.size(), 2u);  // from luff to leech
-  EXPECT_EQ(input.edges.foot[0], Eigen::Vector3d(1, 0, -1));
-  EXPECT_EQ(input.edges.beyond_foot_m, 0.0);
+  EXPECT_TRUE(input.edges.luff.is_seen);
+  EXPECT_FALSE(input.edges.foot.is_seen);
+  ASSERT_EQ(input.edges.foot.points_m.size(), 2u);  // from luff to leech
+  EXPECT_EQ(input.edges.foot.points_m[0], Eigen::Vector3d(1, 0, -1));
+  EXPECT_EQ(input.edges.foot.beyond_m, 0.0);
   EXPECT_FALSE(input.foot_offset_m);
   EXPECT_EQ(input.head_offset_m, 0.25);
-  EXPECT_TRUE(input.edges.head.empty());
+  EXPECT_TRUE(input.edges.head.points_m.empty());
   // Markers on the edge belong to it; where the cloth goes on, they show the surface as well.
   ASSERT_EQ(input.markers.size(), 1u);
   EXPECT_EQ(input.markers[0].marker_id, 31);
@@ -99,7 +99,7 @@ TEST(SurfaceInput, TakesPointsAndLinesAlongTheEdges) {
   part.edges.foot.points = {{23, 0}, {99, 0}};
   part.edges.head.line = "h1";
   const SurfaceInput lacking = CollectSurfaceInput(shape, part, Eigen::Vector3d::UnitZ());
-  EXPECT_TRUE(lacking.edges.foot.empty());
+  EXPECT_TRUE(lacking.edges.foot.points_m.empty());
   EXPECT_EQ(lacking.foot_note,
             "foot: 1 of the markers of its points are whole, 2 needed; the surface ends at the "
             "outer markers");
@@ -145,8 +145,8 @@ TEST(SurfaceInput, LinesFromHeadToFootGiveTheSameInput) {
     EXPECT_EQ(input.lines[1].luff_offset_m, 0.07);
     EXPECT_EQ(input.foot_offset_m, 0.1);
     EXPECT_EQ(input.head_offset_m, 0.8);
-    EXPECT_EQ(input.edges.leech.front(), Eigen::Vector3d(3, 0, 0));
-    EXPECT_EQ(input.edges.leech.back(), Eigen::Vector3d(3, 0, 2));
+    EXPECT_EQ(input.edges.leech.points_m.front(), Eigen::Vector3d(3, 0, 0));
+    EXPECT_EQ(input.edges.leech.points_m.back(), Eigen::Vector3d(3, 0, 2));
   }
 }
 

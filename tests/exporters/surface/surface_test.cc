@@ -308,9 +308,9 @@ TEST(Surface, BadOptionsAreNamed) {
   SurfaceOptions negative, single, both;
   negative.head_extension_mm = -100;
   check(negative, "--Surface.head_extension: -100 is out of range");
-  single.edges.luff = {{0, 0, 0}};
+  single.edges.luff.points_m = {{0, 0, 0}};
   check(single, "luff edge has one point");
-  both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
+  both.edges.foot.points_m = {{0, 0, -1}, {3, 0, -1}};
   both.foot_extension_mm = 500;
   check(both, "give one of the two");
 }

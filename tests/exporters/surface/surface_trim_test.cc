@@ -211,14 +211,15 @@ TEST(SurfaceTrim, ExtensionsMeanTheSameAsOffsets) {
 TEST(SurfaceTrim, EndsAtGivenPoints) {
   MarkedSail marked = BentMainsail(kNearlyExact_m, 3);
   SurfaceOptions options;
-  options.edges.luff = marked.TrueEdge(0);
+  options.edges.luff.points_m = marked.TrueEdge(0);
   for (const SurfaceLine& line : marked.input.lines) {
-    options.edges.leech.push_back(line.markers.back()->x_in_shape_m);
+    options.edges.leech.points_m.push_back(line.markers.back()->x_in_shape_m);
   }
   const FittedSurface fitted = FitSurface(marked.input, options);
   EXPECT_LT(EdgeError(marked, fitted, 0), 0.002);
   const Points leech = FoundEdge(fitted, 1);
-  for (const Eigen::Vector3d& x : options.edges.leech) EXPECT_LT(DistanceFrom(leech, x), 0.001);
+  for (const Eigen::Vector3d& x : options.edges.leech.points_m)
+    EXPECT_LT(DistanceFrom(leech, x), 0.001);
 }
 
 // Markers along the luff that are on none of the lines, some of them beyond these.
@@ -232,12 +233,12 @@ TEST(SurfaceTrim, FollowsTheMarkersOfAnEdgeBetweenTheLines) {
     constexpr int kLast = 8;
     for (int k = 0; k <= kLast; ++k) {
       const double t = k == 0 ? -0.02 : k == kLast ? 1.02 : (k + shift(random)) / kLast;
-      marked.input.edges.leech.push_back(marked.sail({1, marked.Height(t)}));
+      marked.input.edges.leech.points_m.push_back(marked.sail({1, marked.Height(t)}));
     }
     for (SurfaceLine& line : marked.input.lines) line.leech_offset_m.reset();
     const FittedSurface fitted = FitSurface(marked.input);
     const Points leech = FoundEdge(fitted, 1);
-    const Points& given = marked.input.edges.leech;
+    const Points& given = marked.input.edges.leech.points_m;
     for (std::size_t k = 1; k + 1 < given.size(); ++k) {
       EXPECT_LT(DistanceFrom(leech, given[k]), 0.001);
     }
@@ -258,9 +259,9 @@ TEST(SurfaceTrim, EndsBeyondTheMarkersAlongAnEdge) {
       for (int step = 0; step < 20; ++step) {
         u += (kBeyond_m - LengthAlong(marked.sail, v, 0, u)) / LengthAlong(marked.sail, v, 0, 1);
       }
-      marked.input.edges.luff.push_back(marked.sail({u, v}));
+      marked.input.edges.luff.points_m.push_back(marked.sail({u, v}));
     }
-    marked.input.edges.beyond_luff_m = kBeyond_m;
+    marked.input.edges.luff.beyond_m = kBeyond_m;
     EXPECT_LT(EdgeError(marked, FitSurface(marked.input)), 0.003);
   }
 }
@@ -276,8 +277,8 @@ TEST(SurfaceTrim, EndsAtPointsOfARoundFootAndHead) {
     const auto foot = [&](double u) { return marked.sail({u, low - 0.02 - 0.08 * u * (1 - u)}); };
     const auto head = [&](double u) { return marked.sail({u, high + 0.02 + 0.02 * u}); };
     for (const double u : {0.12, 0.37, 0.55, 0.86}) {
-      marked.input.edges.foot.push_back(foot(u));
-      marked.input.edges.head.push_back(head(u));
+      marked.input.edges.foot.points_m.push_back(foot(u));
+      marked.input.edges.head.points_m.push_back(head(u));
     }
     const FittedSurface fitted = FitSurface(marked.input);
     const auto found = [&](double v) {
@@ -285,8 +286,8 @@ TEST(SurfaceTrim, EndsAtPointsOfARoundFootAndHead) {
     };
     EXPECT_LT(LargestDistanceFrom(found(0), MarkedSail::Sample(foot)), 0.01);
     EXPECT_LT(LargestDistanceFrom(found(1), MarkedSail::Sample(head)), 0.01);
-    EXPECT_LT(LargestDistanceFrom(found(0), marked.input.edges.foot), 0.002);
-    EXPECT_LT(LargestDistanceFrom(found(1), marked.input.edges.head), 0.002);
+    EXPECT_LT(LargestDistanceFrom(found(0), marked.input.edges.foot.points_m), 0.002);
+    EXPECT_LT(LargestDistanceFrom(found(1), marked.input.edges.head.points_m), 0.002);
   }
 }
 
