@@ -189,15 +189,14 @@ Lighting FitLighting(PatternProblem* problem, PatternMinimum* minimum) {
     if (found.unexplained > kMaxUnexplainedByBand) break;
     Lighting with_band = lighting;
     with_band.AddBand(found.band);
-    if (!TakeIfBetter(with_band, &lighting, problem, minimum)) {
-      // What falls off along the marker without an edge.
-      if (lighting.IsEven()) TakeIfBetter(lighting, &lighting, problem, minimum);
-      break;
-    }
-    map = MapLight(LitPixels(*problem, minimum->parameters));
+    const bool takes_band = TakeIfBetter(with_band, &lighting, problem, minimum);
+    // Else what falls off along the marker without an edge.
+    const bool takes_bend =
+        !takes_band && lighting.IsEven() && TakeIfBetter(lighting, &lighting, problem, minimum);
+    if (takes_band || takes_bend) map = MapLight(LitPixels(*problem, minimum->parameters));
+    if (!takes_band) break;
   }
   if (lighting.IsEven()) return lighting;
-  map = MapLight(LitPixels(*problem, minimum->parameters));
   if (map.excess - 1 > kMaxUnexplained * (excess - 1)) {
     problem->model = even_model;
     *minimum = even_minimum;
