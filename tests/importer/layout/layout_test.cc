@@ -233,18 +233,23 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongKnownPoint) {
       "2 points are given; three are needed");
 }
 
+// The edges of a sail of two horizontal lines and a vertical one, with `more_lines` and `markers`.
+ClothEdges EdgesOf(const std::string& path, const std::string& edges, const std::string& more_lines,
+                   const std::string& markers) {
+  std::ofstream(path) << "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n"
+                         "    edges: {"
+                      << edges
+                      << "}\n    horizontal:\n      - {name: h1, markers: [1, 2]}\n"
+                         "      - {name: h2, markers: [3, 4]}\n"
+                      << more_lines << "    vertical:\n      - {name: v1, markers: [2, 4]}\n"
+                      << markers;
+  return ReadLayout(path).parts[0].edges;
+}
+
 TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
   const TempDir dir;
   const auto edges_of = [&](const std::string& edges) {
-    const std::string path = dir / "edges.yml";
-    std::ofstream(path) << "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n"
-                           "    edges: {" +
-                               edges +
-                               "}\n"
-                               "    horizontal:\n      - {name: h1, markers: [1, 2]}\n"
-                               "      - {name: h2, markers: [3, 4]}\n"
-                               "    vertical:\n      - {name: v1, markers: [2, 4]}\n";
-    return ReadLayout(path).parts[0].edges;
+    return EdgesOf(dir / "edges.yml", edges, "", "");
   };
   const ClothEdges edges = edges_of("luff: [0.05, 0.07], leech: {line: v1}, head: 0.2");
   EXPECT_THAT(edges.luff.offsets_m, ElementsAre(0.05, 0.07));
@@ -267,17 +272,8 @@ TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
 TEST(ReadLayout, ReadsLinesAndPointsAlongTheEdges) {
   const TempDir dir;
   const auto edges_of = [&](const std::string& edges) {
-    const std::string path = dir / "edges.yml";
-    std::ofstream(path) << "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n"
-                           "    edges: {" +
-                               edges +
-                               "}\n"
-                               "    horizontal:\n      - {name: h1, markers: [1, 2]}\n"
-                               "      - {name: h2, markers: [3, 4]}\n"
-                               "      - {name: h3, markers: [5, 6]}\n"
-                               "    vertical:\n      - {name: v1, markers: [2, 4]}\n"
-                               "    markers: [21, 22]\n";
-    return ReadLayout(path).parts[0].edges;
+    return EdgesOf(dir / "edges.yml", edges, "      - {name: h3, markers: [5, 6]}\n",
+                   "    markers: [21, 22]\n");
   };
   const ClothEdges edges = edges_of(
       "luff: {line: v1, offset: 0.02}, leech: {points: [2, 4.3]}, "
