@@ -96,6 +96,9 @@ void AddMetrics(const ModelMetrics& metrics, MetricsReport* report) {
 void AddMetrics(const ScaleEstimate& scale, MetricsReport* report) {
   Append({{"scale_m_per_unit", scale.m_per_unit}}, report);
   AddSigma("scale_sigma_percent", scale.relative_sigma, &report->metrics, 100.0);
+  if (scale.print_sigma > 0) {
+    Append({{"print_scale_sigma_percent", 100.0 * scale.print_sigma}}, report);
+  }
   Append({{"scale_spread_percent", 100.0 * scale.relative_spread},
           {"num_scale_markers", scale.num_markers}},
          report);

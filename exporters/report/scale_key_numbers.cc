@@ -41,6 +41,15 @@ std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
   return 100 * *scale.relative_sigma;
 }
 
+// The part of the sigma that no picture shows; empty if there is none.
+std::string PrintText(const ScaleEstimate& scale) {
+  if (!(scale.print_sigma > 0)) return "";
+  return fmt::format(
+      "; {:.3g} % of the first is assumed for the print (common_print_tolerance), and a measured "
+      "distance replaces it",
+      100 * scale.print_sigma);
+}
+
 // How far the markers are from their lengths in the layout where the model was adjusted with other
 // lengths; empty where it was not, or where measured distances explain it.
 std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& audit) {
@@ -93,7 +102,8 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
       KeyNumberKind::kScale, value,
       fmt::format("standard deviations of the metric scale and of the scales from each of {} "
                   "markers alone; good up to {:g} % and {:g} % spread",
-                  scale.num_markers, kGoodScaleSigma_percent, kGoodScaleSpread_percent),
+                  scale.num_markers, kGoodScaleSigma_percent, kGoodScaleSpread_percent) +
+          PrintText(scale),
       LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
       "the sizes of the markers contradict each other: check their prints and marker_length, and "
       "measure a distance (distances, use: scale)"};

@@ -101,6 +101,7 @@ ScaleEstimate MetricScale(std::map<int, double> m_per_unit_of,
   ScaleEstimate estimate;
   estimate.m_per_unit = 1.0;
   estimate.relative_sigma = uncertainty.relative_scale_sigma;
+  estimate.print_sigma = uncertainty.print_scale_sigma;
   estimate.m_per_unit_of = std::move(m_per_unit_of);
   if (estimate.m_per_unit_of.empty()) return estimate;  // a scale bar needs no marker
   const Agreement agreement = FindAgreement(estimate.m_per_unit_of);

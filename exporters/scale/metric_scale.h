@@ -25,6 +25,7 @@ struct ScaleEstimate {
   // standard error of the mean over the markers used, which excludes errors that all markers share;
   // nothing for a single marker.
   std::optional<double> relative_sigma;
+  double print_sigma = 0.0;             // AdjustmentUncertainty::print_scale_sigma
   int num_markers = 0;                  // markers used
   std::map<int, double> m_per_unit_of;  // scale from each marker alone, by marker id
 };

@@ -240,6 +240,10 @@ void MarkerAdjuster::Finish() {
   }
   AdjustmentUncertainty uncertainty = MakeUncertainty(
       linearization->state, solution_.weights, linearization->problem, linearization->covariance);
+  if (solution_.weights.scale_bars.empty()) {
+    uncertainty.print_scale_sigma =
+        std::min(solution_.options.common_print_tolerance, uncertainty.relative_scale_sigma);
+  }
   uncertainty.variance_factor = calibration.variance_factor;
   uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
   uncertainty.correlation_factor = correlation_factor;

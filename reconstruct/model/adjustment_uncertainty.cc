@@ -18,9 +18,10 @@ namespace velamap {
 namespace {
 
 // Layout of the file: magic, version, eight doubles, CalibrationEvidence, points, blocks, factor,
-// signs, hash of the model (from version 5 on); little-endian.
+// signs, hash of the model (from version 5 on), print_scale_sigma (from version 6 on);
+// little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 5, kVersionWithoutHash = 4;
+constexpr std::uint32_t kVersion = 6, kFirstVersionWithHash = 5, kOldestVersion = 4;
 
 // In the order of the file.
 constexpr std::array<double AdjustmentUncertainty::*, 8> kMembers = {
@@ -167,6 +168,7 @@ void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, 
   WriteMatrix(points.factor, out);
   WriteMatrix(points.signs, out);
   Write(HashOfPoints(model), out);
+  Write(uncertainty.print_scale_sigma, out);
 }
 
 }  // namespace
@@ -185,7 +187,7 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   if (!std::equal(magic, magic + sizeof(magic), kMagic))
     reader.Fail("is not an uncertainty file of velamap");
   const auto version = reader.Read<std::uint32_t>();
-  if (version != kVersion && version != kVersionWithoutHash)
+  if (version < kOldestVersion || version > kVersion)
     reader.Fail(fmt::format("has the unknown version {}", version));
   AdjustmentUncertainty uncertainty;
   for (const auto member : kMembers) uncertainty.*member = reader.Read<double>();
@@ -202,7 +204,8 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   const Eigen::MatrixXd signs = reader.ReadMatrix();
   if (signs.cols() != 1) reader.Fail("is broken");
   points.signs = signs;
-  if (version != kVersionWithoutHash) uncertainty.model_hash = reader.Read<std::uint64_t>();
+  if (version >= kFirstVersionWithHash) uncertainty.model_hash = reader.Read<std::uint64_t>();
+  if (version == kVersion) uncertainty.print_scale_sigma = reader.Read<double>();
   reader.ExpectEnd();
   CheckShapes(points, reader);
   return uncertainty;

@@ -24,6 +24,9 @@ struct AdjustmentUncertainty {
   // 1 sigma of the common scale of all points, as a fraction, from corner noise, print tolerance
   // and apparent inset together. `points` includes it.
   double relative_scale_sigma = 0.0;
+  // The part of relative_scale_sigma that no image shows, because it is assumed for the print
+  // (MarkerAdjustmentOptions::common_print_tolerance). 0 where measured distances give the scale.
+  double print_scale_sigma = 0.0;
   // Sum of squares of the weighted corner residuals / redundancy. 1 where the corners' sigmas are
   // right.
   double variance_factor = 1.0;

@@ -51,7 +51,12 @@ void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
 void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
   out << fmt::format("size: {}", BoxText(BoundingBox(shape.shape), "x"));
   if (shape.scale.relative_sigma) {
-    out << fmt::format(", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
+    out << fmt::format(", known to {:.2f} % (1 sigma", 100.0 * *shape.scale.relative_sigma);
+    if (shape.scale.print_sigma > 0) {
+      out << fmt::format(", of which {:.2f} % is assumed for the print",
+                         100.0 * shape.scale.print_sigma);
+    }
+    out << ')';
   }
   out << fmt::format(
       "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",

@@ -234,9 +234,12 @@ TEST_F(MarkerAdjustment, ScaleBarWinsOverPoorMarkers) {
   };
   EXPECT_NEAR((center(0) - center(11)).norm(), length_m, 3e-4);
   EXPECT_LT(summary.uncertainty.relative_scale_sigma, 1e-3);
+  EXPECT_EQ(summary.uncertainty.print_scale_sigma, 0.0);
   scene_.layout.distances.clear();
   Model without = NoisyModel(0.05, 9);
-  EXPECT_GT(Adjust(&without, options).uncertainty.relative_scale_sigma, 0.0099);
+  const AdjustmentUncertainty by_markers = Adjust(&without, options).uncertainty;
+  EXPECT_GT(by_markers.relative_scale_sigma, 0.0099);
+  EXPECT_EQ(by_markers.print_scale_sigma, 0.01);
 }
 
 TEST_F(MarkerAdjustment, ScaleBarThatIsGrosslyWrongIsReportedAndNotUsed) {

@@ -23,6 +23,7 @@ class UncertaintyFile : public testing::Test {
     uncertainty_.points.factor(4, 1) = 1.0 / 3.0;
     uncertainty_.points.signs = Eigen::Vector2d(1, -1);
     uncertainty_.relative_scale_sigma = 1e-3;
+    uncertainty_.print_scale_sigma = 8e-4;
     uncertainty_.variance_factor = 1.7;
     uncertainty_.apparent_inset_px = -0.01;
     uncertainty_.apparent_inset_sigma_px = 0.02;
@@ -44,14 +45,16 @@ class UncertaintyFile : public testing::Test {
     std::ofstream(dir_ / kUncertaintyFileName, std::ios::binary) << bytes;
   }
 
-  // Without the hash of the model.
-  void WriteEarlierVersion() const {
+  // A file without the last values of the current version.
+  void WriteEarlierVersion(char version, std::size_t num_values_less) const {
     WriteUncertainty(uncertainty_, {}, Folder());
     std::string bytes = FileBytes();
-    bytes[8] = '\x04';
-    bytes.resize(bytes.size() - sizeof(std::uint64_t));
+    bytes[8] = version;
+    bytes.resize(bytes.size() - 8 * num_values_less);
     WriteBytes(bytes);
   }
+
+  void WriteVersionWithoutHash() const { WriteEarlierVersion(4, 2); }
 
   TempDir dir_;
   AdjustmentUncertainty uncertainty_;
@@ -67,6 +70,7 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(read.points.factor, uncertainty_.points.factor);
   EXPECT_EQ(read.points.signs, uncertainty_.points.signs);
   EXPECT_EQ(read.relative_scale_sigma, uncertainty_.relative_scale_sigma);
+  EXPECT_EQ(read.print_scale_sigma, uncertainty_.print_scale_sigma);
   EXPECT_EQ(read.variance_factor, uncertainty_.variance_factor);
   EXPECT_EQ(read.apparent_inset_px, uncertainty_.apparent_inset_px);
   EXPECT_EQ(read.correlation_factor, uncertainty_.correlation_factor);
@@ -100,16 +104,19 @@ TEST_F(UncertaintyFile, IsTiedToItsModel) {
   other = model;
   other.points3D[9999].x_in_world.setOnes();
   EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
-  WriteEarlierVersion();  // does not say of which model
+  WriteVersionWithoutHash();  // does not say of which model
   EXPECT_TRUE(ReadUncertaintyOf(other, Folder()));
   other.points3D.erase(uncertainty_.points.point3D_ids.front());
   EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
 }
 
-TEST_F(UncertaintyFile, FilesOfTheEarlierVersionAreRead) {
-  WriteEarlierVersion();
+TEST_F(UncertaintyFile, FilesOfEarlierVersionsAreRead) {
+  WriteVersionWithoutHash();
   EXPECT_EQ(ReadUncertainty(Folder()).points.signs, uncertainty_.points.signs);
   EXPECT_EQ(ReadUncertainty(Folder()).model_hash, 0u);
+  WriteEarlierVersion(5, 1);
+  EXPECT_NE(ReadUncertainty(Folder()).model_hash, 0u);
+  EXPECT_EQ(ReadUncertainty(Folder()).print_scale_sigma, 0.0);
 }
 
 TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {

@@ -38,6 +38,8 @@ ReconstructionSummary SummaryOfASail() {
   uncertainty.rolling_shutter_sigma_s = 0.0001;
   summary.adjustment.uncertainty = uncertainty;
   summary.shape.shape = BoatShape();
+  summary.shape.scale.relative_sigma = 0.0011;
+  summary.shape.scale.print_sigma = 0.001;
   for (int line = 1; line <= 7; ++line) {
     summary.shape.sail.sections.sections.push_back(SectionOf("sail", line));
   }
@@ -70,6 +72,8 @@ std::string TextOf(const ReconstructionSummary& summary) {
 TEST(PrintSummary, OfASailIsAtMostTenLines) {
   const std::string text = TextOf(SummaryOfASail());
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 10) << text;
+  EXPECT_THAT(text,
+              HasSubstr(", known to 0.11 % (1 sigma, of which 0.10 % is assumed for the print); "));
   EXPECT_THAT(text, HasSubstr("images: 80 of 150 used, "));
   EXPECT_THAT(text, HasSubstr("rolling shutter of 11.71 +- 0.10 ms corrected\n"));
   EXPECT_THAT(text,
