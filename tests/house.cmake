@@ -8,7 +8,7 @@ house_folder(importer/base PUBLIC
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  csv id_ranges markup number_text output_date shown_text text_file)
+  csv id_ranges markup nearest_name number_text output_date shown_text text_file)
 house_folder(importer/lanes PUBLIC
   blurred_cells float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
@@ -125,7 +125,7 @@ house_folder(workflows/plan PUBLIC
 house_folder(workflows/calibrate PUBLIC
   board_calibration)
 house_folder(workflows/options PUBLIC
-  help_text nearest_name option_effects option_parser path_check sail_options shared_options)
+  help_text option_effects option_parser path_check sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands program)
 house_folder(workflows/install)

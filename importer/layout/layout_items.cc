@@ -64,10 +64,12 @@ void CheckEdgeLine(const YamlItem& item, const std::string& name, const LayoutPa
                    EdgeKind kind) {
   const auto is_it = [&](const MarkerLine& line) { return line.name == name; };
   if (kind == EdgeKind::kEnd && !is_it(part.horizontal.front()) && !is_it(part.horizontal.back())) {
-    item.Fail(fmt::format(
-        "'{}' is neither the first nor the last horizontal line; expected '{}' or '{}', "
-        "or {{points: [...]}} for markers on no line",
-        name, part.horizontal.front().name, part.horizontal.back().name));
+    const std::string first = "'" + part.horizontal.front().name + "'";
+    const std::string last = "'" + part.horizontal.back().name + "'";
+    item.Fail(
+        fmt::format("'{}' is neither the first nor the last horizontal line; expected {}, "
+                    "or {{points: [...]}} for markers on no line",
+                    name, first == last ? first : first + " or " + last));
   }
   if (kind == EdgeKind::kSide && std::none_of(part.vertical.begin(), part.vertical.end(), is_it)) {
     item.Fail(

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -20,6 +21,7 @@
 #include "importer/layout/layout_items.h"
 #include "importer/layout/yaml_item.h"
 #include "importer/text/id_ranges.h"
+#include "importer/text/nearest_name.h"
 #include "importer/text/text_file.h"
 
 namespace velamap {
@@ -142,6 +144,15 @@ std::vector<LayoutPart> ReadParts(const YamlItem& item) {
   return parts;
 }
 
+void CheckIsPart(const YamlItem& item, const std::string& name,
+                 const std::vector<LayoutPart>& parts) {
+  std::vector<std::string> known;
+  for (const LayoutPart& part : parts) known.push_back(part.name);
+  if (std::count(known.begin(), known.end(), name) > 0) return;
+  item.Fail(fmt::format("there is no part '{}'; {}known here: {}", name, DidYouMean(name, known),
+                        known.empty() ? "none" : fmt::format("{}", fmt::join(known, " "))));
+}
+
 std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   std::map<int, double> lengths_m;
   ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
@@ -242,9 +253,7 @@ Layout ReadLayout(const std::string& path) {
   }
   if (reference) {
     layout.reference_part = ReadString(*reference);
-    bool known = false;
-    for (const LayoutPart& part : layout.parts) known |= part.name == *layout.reference_part;
-    if (!known) reference->Fail("there is no part '" + *layout.reference_part + "'");
+    CheckIsPart(*reference, *layout.reference_part, layout.parts);
   }
   if (distances) layout.distances = ReadDistances(*distances, layout);
   if (known_points) layout.known_points = ReadKnownPoints(*known_points, layout);

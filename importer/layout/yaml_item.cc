@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "importer/base/error.h"
+#include "importer/text/nearest_name.h"
 
 namespace velamap {
 namespace {
@@ -74,9 +76,10 @@ void ReadMap(const YamlItem& map, const KeyHandlers& handlers) {
   ForEachKey(map, [&](const std::string& name, const YamlItem& value) {
     const auto handler = handlers.find(name);
     if (handler == handlers.end()) {
-      std::string known;
-      for (const auto& [known_name, function] : handlers) known += " " + known_name;
-      value.Fail("unknown key; known here:" + known);
+      std::vector<std::string> known;
+      for (const auto& [known_name, function] : handlers) known.push_back(known_name);
+      value.Fail(fmt::format("unknown key; {}known here: {}", DidYouMean(name, known),
+                             fmt::join(known, " ")));
     }
     handler->second(value);
   });

@@ -34,7 +34,7 @@ void ForEachKey(const YamlItem& map,
 using KeyHandlers = std::map<std::string, std::function<void(const YamlItem&)>>;
 
 // Calls the handler of every key in the map. A key without a handler is an error, whose message
-// lists the known keys.
+// names the nearest known key and lists all of them.
 void ReadMap(const YamlItem& map, const KeyHandlers& handlers);
 
 // The same for a map that must have the keys `required`. The error message for a missing key shows

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/text/nearest_name.h"
 #include "importer/text/output_date.h"
 #include "workflows/options/help_text.h"
-#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/text/nearest_name.h"
 #include "workflows/options/given_values.h"
 #include "workflows/options/help_text.h"
-#include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/project_file.h"
 

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/text/nearest_name.h"
 #include "importer/text/text_file.h"
-#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {

@@ -101,7 +101,12 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   expect("- 1\n", 1, "a map");
   expect("marker_length: 0.1\n", 1, "key 'dictionary' is missing");
   expect("dictionary: DICT_4X4_50\n", 1, "key 'marker_length' is missing");
-  expect(head + "marker_size: 3\n", 3, "unknown key; known here: border_bits dictionary");
+  expect(head + "marker_size: 3\n", 3,
+         "unknown key; did you mean marker_length? known here: border_bits dictionary");
+  expect(head + "parts: {sail: {horizonal: [{name: h1, markers: [1]}]}}\n", 3,
+         "did you mean horizontal? known here: ");
+  expect(head + "parts: {hull: {markers: [1]}}\nreference_part: hul\n", 4,
+         "there is no part 'hul'; did you mean hull? known here: hull");
   expect(head + "marker_length: 0.2\n", 3, "marker_length: is given twice");
   expect("dictionary: D\nmarker_length: 100mm\n", 2, "a length in metres");
   for (const char* length : {"0", "-0.1", "0.00001", "100", "nan", "inf"}) {
@@ -305,6 +310,18 @@ TEST(ReadLayout, ReadsLinesAndPointsAlongTheEdges) {
       "head: {points: [5, 21]}",
       ".head.points[0]: the centre of marker 5 is on the line h3, which cannot also be the edge; "
       "name a corner of it, such as 5.4, or {line: h3}");
+}
+
+TEST(ReadLayout, TheOnlyLineOfAPartIsNamedOnce) {
+  const TempDir dir;
+  ExpectThrows<InputError>(
+      [&] {
+        ReadLayout(WriteLayout(dir,
+                               "dictionary: D\nmarker_length: 0.1\nparts: {sail: {edges: {foot: "
+                               "{line: h2}}, horizontal: [{name: h1, markers: [1, 2]}]}}\n"));
+      },
+      {"'h2' is neither the first nor the last horizontal line; expected 'h1', or {points: "
+       "[...]}"});
 }
 
 TEST(ReadLayout, WithoutPartsAnyMarkerMayHaveADistance) {

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "importer/text/nearest_name.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/help_text.h"
-#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,4 @@
-#include "workflows/options/nearest_name.h"
+#include "importer/text/nearest_name.h"
 
 #include <algorithm>
 #include <numeric>
@@ -73,7 +73,9 @@ std::optional<int> WordDistance(const std::string& a, const std::string& b) {
 
 std::string NearestName(const std::string& text, const std::vector<std::string>& names) {
   std::string nearest;
-  int smallest = static_cast<int>(text.size() + 1) / 2;  // beyond half of the letters it is a guess
+  // Beyond half of the letters it is a guess, and so is any name for a single letter.
+  const int num_letters = static_cast<int>(text.size());
+  int smallest = std::min((num_letters + 1) / 2, num_letters - 1);
   for (const std::string& name : names) {
     if (name == text) continue;
     const int by_letters = LetterDistance(text, name);
