@@ -38,7 +38,7 @@ void SilenceOpenCv() {
                  [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
 }
 
-// Logs a message that was not logged before: a video is opened more than once in a run.
+// Logs a message that was not logged before: a video or a folder is read more than once in a run.
 void LogOnce(LogLevel level, const std::string& message) {
   static std::mutex mutex;
   static std::set<std::string> logged;
@@ -61,8 +61,9 @@ std::vector<std::string> ListImages(const fs::path& folder) {
   }
   for (const std::string& name : names) CheckImageName(name, folder.string());
   if (!others.empty()) {
-    LogWarning("{}: ignored {} files that have no image extension, such as {}", folder.string(),
-               others.size(), others.front());
+    LogOnce(LogLevel::kWarn,
+            fmt::format("{}: ignored {} files that have no image extension, such as {}",
+                        folder.string(), others.size(), others.front()));
   }
   return names;
 }
@@ -83,11 +84,12 @@ class ImageFolder : public FrameSource {
     const fs::path path = folder_ / frame->image_name;
     frame->color = DecodeImageFile(path.string(), reason);
     if (frame->color.empty()) {
-      LogWarning("{}: skipped: {}", path.string(), *reason);
+      LogOnce(LogLevel::kWarn, fmt::format("{}: skipped: {}", path.string(), *reason));
       return false;
     }
     if (!reason->empty()) {
-      LogWarning("{}: used, but {}", path.string(), std::exchange(*reason, ""));
+      LogOnce(LogLevel::kWarn,
+              fmt::format("{}: used, but {}", path.string(), std::exchange(*reason, "")));
     }
     frame->source = IdentifySource(path.string());
     cv::cvtColor(frame->color, frame->gray, cv::COLOR_BGR2GRAY);
@@ -160,7 +162,8 @@ class VideoFile : public FrameSource {
     CheckFields(*frame);
     if (!frame->gray.empty()) return true;
     *reason = "its pixel format cannot be converted to grey";
-    LogWarning("{}: {} is skipped: {}", path_, frame->image_name, *reason);
+    LogOnce(LogLevel::kWarn,
+            fmt::format("{}: {} is skipped: {}", path_, frame->image_name, *reason));
     return false;
   }
 
@@ -231,8 +234,9 @@ class VideoFile : public FrameSource {
     // A container that derives the count from its duration is off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
     if (num_read_ < num_container_frames_ - tolerance) {
-      LogWarning("{}: the video breaks off after {} of {} frames; these are used", path_, num_read_,
-                 num_container_frames_);
+      LogOnce(LogLevel::kWarn,
+              fmt::format("{}: the video breaks off after {} of {} frames; these are used", path_,
+                          num_read_, num_container_frames_));
     }
   }
 

@@ -49,6 +49,24 @@ std::vector<int> FrameNumbers(const std::vector<Frame>& frames) {
   return numbers;
 }
 
+// The pictures of a folder are read more than once in a run.
+TEST(ImageFolder, WarnsOnceOfABrokenFile) {
+  const TempDir dir;
+  cv::imwrite(dir / "broken.jpg", NoiseImage(64, 48));
+  CutFile(dir / "broken.jpg", 0.1);
+  testing::internal::CaptureStdout();
+  for (int i = 0; i < 3; ++i) {
+    const auto source = OpenFrameSource(dir.path(), {});
+    Frame frame = source->Next().value();
+    std::string reason;
+    source->Load(&frame, &reason);
+  }
+  const std::string log = testing::internal::GetCapturedStdout();
+  const std::size_t first = log.find("broken.jpg: ");
+  ASSERT_NE(first, std::string::npos) << log;
+  EXPECT_EQ(log.find("broken.jpg: ", first + 1), std::string::npos) << log;
+}
+
 TEST(ImageFolder, ListsNestedImagesInNaturalOrder) {
   const TempDir dir;
   fs::create_directory(dir / "sub");
