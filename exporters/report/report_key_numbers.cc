@@ -118,7 +118,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   add(SteadinessNumber(input.steadiness));
   add(RollingShutterNumber(input.uncertainty));
   add(FoundCameraNumber(input.found_cameras));
-  add(ScaleNumber(input.scale, input.audit, input.uncertainty));
+  add(ScaleNumber(input.scale, input.audit, input.uncertainty, input.warnings));
   if (input.audit != nullptr) add(DistancesNumber(*input.audit));
   if (input.known_points != nullptr) add(KnownPointsNumber(*input.known_points));
   add(PrecisionNumber(input.shape));

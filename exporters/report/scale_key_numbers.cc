@@ -10,6 +10,7 @@
 #include "exporters/datum/known_points_report.h"
 #include "exporters/report/camera_key_numbers.h"
 #include "exporters/scale/scale_audit_report.h"
+#include "reconstruct/model/weak_geometry.h"
 
 namespace velamap {
 namespace {
@@ -67,6 +68,21 @@ std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& 
       std::abs(audit.deviation) / sigma);
 }
 
+// A spread of more than the noise of the corners can only come from the markers. Without sigmas of
+// the corners, nothing else is known to explain it.
+std::string SpreadAdvice(const ScaleAudit* audit, const std::vector<std::string>& warnings) {
+  const bool is_noise_known =
+      audit != nullptr && !audit->markers.empty() && audit->markers.front().sigma.has_value();
+  if (!is_noise_known || 100 * audit->marker_spread > kGoodScaleSpread_percent) {
+    return "the sizes of the markers contradict each other: check their prints and marker_length, "
+           "and measure a distance (distances, use: scale)";
+  }
+  const auto weak = std::find_if(warnings.begin(), warnings.end(), IsWeakGeometryWarning);
+  if (weak != warnings.end()) return *weak;
+  return "the images determine single markers too poorly to compare their sizes: take more images, "
+         "from closer and from places more than 30 degrees apart";
+}
+
 // A small spread proves nothing if the scale is hardly known: one marker never contradicts itself.
 void JudgeScaleSigma(const ScaleEstimate& scale, KeyNumber* number) {
   const std::optional<double> sigma_percent = SigmaPercent(scale);
@@ -92,7 +108,8 @@ void JudgeScaleSigma(const ScaleEstimate& scale, KeyNumber* number) {
 }  // namespace
 
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
-                      const AdjustmentUncertainty* uncertainty) {
+                      const AdjustmentUncertainty* uncertainty,
+                      const std::vector<std::string>& warnings) {
   const double spread_percent = 100 * scale.relative_spread;
   std::string value = fmt::format("{:.2f} % spread", spread_percent);
   if (const auto sigma_percent = SigmaPercent(scale)) {
@@ -105,8 +122,7 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                   scale.num_markers, kGoodScaleSigma_percent, kGoodScaleSpread_percent) +
           PrintText(scale),
       LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
-      "the sizes of the markers contradict each other: check their prints and marker_length, and "
-      "measure a distance (distances, use: scale)"};
+      SpreadAdvice(audit, warnings)};
   JudgeScaleSigma(scale, &number);
   const std::string contradiction =
       audit != nullptr && uncertainty != nullptr ? ContradictionOfLayout(scale, *audit) : "";

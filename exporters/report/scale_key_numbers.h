@@ -3,14 +3,18 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "exporters/report/report_key_numbers.h"
 
 namespace velamap {
 
-// `audit` and `uncertainty` may be null.
+// `audit` and `uncertainty` may be null. A warning of weak geometry (weak_geometry.h) is the advice
+// where the noise of the corners explains that the markers' sizes differ.
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
-                      const AdjustmentUncertainty* uncertainty);
+                      const AdjustmentUncertainty* uncertainty,
+                      const std::vector<std::string>& warnings);
 
 // Distances measured by hand. Those that the adjustment used prove nothing, unless it left them
 // out. Nothing for a layout without distances.

@@ -64,30 +64,41 @@ struct Views {
   double camera_extent_m = 0.0;  // largest distance between two cameras
   double distance_m = 0.0;       // median distance of a camera from the centroid of the points
   double parallax_rad = 0.0;     // median over the points of the largest angle between two views
+  double around_rad = 0.0;       // the same if every image saw every point
   double object_extent_m = 0.0;  // RMS distance of the points from their centroid
   bool is_flat = false;
   double max_tilt_rad = 0.0;  // largest angle between a view and the normal of a flat object
 };
 
-double MedianParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers) {
+// The largest angle between two cameras as seen from a point.
+double LargestParallax(const Eigen::Vector3d& x, const std::vector<Eigen::Vector3d>& cameras) {
+  double parallax = 0.0;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      parallax = std::max(parallax, AngleBetween(cameras[i] - x, cameras[j] - x));
+    }
+  }
+  return parallax;
+}
+
+// Sets the angles that are medians over the points.
+void MeasureParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers,
+                     Views* views) {
   std::map<ImageId, std::size_t> image_idxs;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     image_idxs[model.images[i].image_id] = i;
   }
-  std::vector<double> parallaxes;
+  std::vector<double> seen_rad, around_rad;
   for (const auto& [point3D_id, point] : model.points3D) {
-    std::vector<Eigen::Vector3d> rays;
+    std::vector<Eigen::Vector3d> seeing;
     for (const TrackElement& element : point.track) {
-      rays.push_back(camera_centers[image_idxs.at(element.image_id)] - point.x_in_world);
+      seeing.push_back(camera_centers[image_idxs.at(element.image_id)]);
     }
-    double parallax = 0.0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j)
-        parallax = std::max(parallax, AngleBetween(rays[i], rays[j]));
-    }
-    parallaxes.push_back(parallax);
+    seen_rad.push_back(LargestParallax(point.x_in_world, seeing));
+    around_rad.push_back(LargestParallax(point.x_in_world, camera_centers));
   }
-  return Median(std::move(parallaxes));
+  views->parallax_rad = Median(std::move(seen_rad));
+  views->around_rad = Median(std::move(around_rad));
 }
 
 Views DescribeViews(const Model& model) {
@@ -113,28 +124,42 @@ Views DescribeViews(const Model& model) {
     }
   }
   views.distance_m = Median(std::move(distances_m));
-  views.parallax_rad = MedianParallax(model, centers);
+  MeasureParallax(model, centers, &views);
   return views;
 }
 
-std::string Reason(const Views& views) {
+struct Explanation {
+  std::string cause, remedy;
+};
+
+Explanation Explain(const Views& views) {
   constexpr double kOnePlace = 0.02;
   constexpr double kHeadOn = 20.0 * kRadPerDeg;
+  const std::string move = "take images from places more than 30 degrees apart";
   if (views.camera_extent_m < kOnePlace * views.distance_m) {
-    return fmt::format(
-        "all images are taken from one place (within {:.2g} m, at a distance of {:.2g} m): the "
-        "camera turned, but hardly moved",
-        views.camera_extent_m, views.distance_m);
+    return {fmt::format(
+                "all images are taken from one place (within {:.2g} m, at a distance of {:.2g} m): "
+                "the camera turned, but hardly moved",
+                views.camera_extent_m, views.distance_m),
+            move};
   }
   if (views.is_flat && views.max_tilt_rad < kHeadOn) {
-    return fmt::format(
-        "a flat object is seen head-on in all images (within {:.0f} degrees of its normal)",
-        kDegPerRad * views.max_tilt_rad);
+    return {fmt::format("a flat object is seen head-on in all images (within {:.0f} degrees of its "
+                        "normal)",
+                        kDegPerRad * views.max_tilt_rad),
+            move};
   }
-  return fmt::format(
-      "there is hardly any parallax: half of the points are seen within less than "
-      "{:.1f} degrees",
-      kDegPerRad * views.parallax_rad);
+  const std::string within =
+      fmt::format("half of the points are seen within less than {:.1f} degrees",
+                  kDegPerRad * views.parallax_rad);
+  if (views.around_rad > kMaxWeakParallax) {  // the camera moved enough
+    return {fmt::format("{}, although the camera moved by {:.0f} degrees around them: most images "
+                        "do not show their markers, or not clearly enough",
+                        within, kDegPerRad * views.around_rad),
+            "keep all markers in the picture and make them larger or sharper in it (go closer, "
+            "shorten the shutter, avoid glare)"};
+  }
+  return {"there is hardly any parallax: " + within, move};
 }
 
 }  // namespace
@@ -147,10 +172,10 @@ std::string FindWeakGeometry(const Model& model, const PointCovariance& points) 
   if (ellipsoid.elongation < kMaxElongation) return {};
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
+  const Explanation explanation = Explain(views);
   const std::string text = fmt::format(
-      "{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: take images from places "
-      "more than 30 degrees apart",
-      Reason(views), kTherefore, 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
+      "{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: {}", explanation.cause,
+      kTherefore, 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m, explanation.remedy);
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
     throw DataError("the images leave the shape undetermined: " + text);
   }

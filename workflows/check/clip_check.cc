@@ -9,6 +9,7 @@
 #include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
 #include "importer/marker_importer.h"
+#include "reconstruct/registration/repeated_frames.h"
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/clip_ids.h"
 #include "workflows/check/clip_light.h"
@@ -41,6 +42,14 @@ Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, Clip
   Layout layout = UseDictionary(hints[0], detection);
   layout.dictionary = LargestOfFamily(layout.dictionary);
   return layout;
+}
+
+bool ShowOnePicture(const std::vector<DatabaseImage>& images) {
+  std::vector<const DatabaseImage*> frames;
+  for (const DatabaseImage& image : images) frames.push_back(&image);
+  const std::vector<bool> is_repeated = FindRepeatedFrames(frames);
+  const auto num_repeated = std::count(is_repeated.begin(), is_repeated.end(), true);
+  return num_repeated > 0 && num_repeated + 1 == static_cast<std::ptrdiff_t>(frames.size());
 }
 
 FrameTimes TimesOf(const ClipFrames& clip, const VideoOptions& video, int num_frames) {
@@ -123,6 +132,7 @@ class Checker {
       by_name[image.detections.image_name] = &image.detections;
     }
     CollectFacts(clip, layout, images, by_name);
+    check_.facts.shows_one_picture = clip.is_video && ShowOnePicture(images);
     FindFaults(clip, by_name, layout, importer.detection);
     if (options_.proposes_layout) Propose(importer.database_path, layout);
     if (MeasuresPrecision()) Reconstruct(importer.database_path, layout);
@@ -152,6 +162,10 @@ class Checker {
     const int num_frames = facts.num_frames_read + facts.num_frames_damaged;
     facts.parts = FindClipParts(images, TimesOf(clip, video, num_frames), layout,
                                 facts.precision ? &*facts.precision : nullptr);
+    if (!facts.shows_one_picture) return;
+    for (ClipPart& part : facts.parts) {
+      if (part.lacks.empty()) part.lacks = "one picture, repeated";
+    }
   }
 
   // Of the prints, for a layout; of the pictures, where the clip hardly shows any marker.

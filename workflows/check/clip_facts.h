@@ -50,6 +50,7 @@ struct ClipFacts {
   int num_frames_with_few_markers = 0;  // fewer than four
   int num_frames_damaged = 0;           // that should have been read, but are damaged in the file
   bool is_video = false;
+  bool shows_one_picture = false;  // in all frames with markers, if there are at least two of them
   int width_px = 0, height_px = 0;
 
   std::string dictionary;

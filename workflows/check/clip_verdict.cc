@@ -6,6 +6,7 @@
 
 #include "exporters/report/camera_key_numbers.h"
 #include "importer/text/id_ranges.h"
+#include "reconstruct/model/weak_geometry.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {
@@ -166,17 +167,25 @@ class Judge {
   }
 
   void JudgeWithoutPrecision() {
+    if (facts_.shows_one_picture) {
+      reasons_.Bad(
+          "all frames with markers show the same picture, which does not determine depth: film "
+          "again, and move the camera around the object");
+      return;
+    }
     if (facts_.LacksSizes()) {
       reasons_.Check(
           "depth, zoom and stabilization are not checked without the markers' sizes: give "
           "--layout_path, or --dictionary and --marker_length");
     }
     if (facts_.num_frames_of_id.empty() || facts_.no_precision_because.empty()) return;
+    const bool may_be_calibration =
+        facts_.has_camera && !IsWeakGeometryWarning(facts_.no_precision_because);
     reasons_.Bad(fmt::format(
         "no shape can be reconstructed from these frames: {}{}", facts_.no_precision_because,
-        facts_.has_camera ? "; the calibration may be of another camera, lens mode or zoom: check "
-                            "it, too"
-                          : ""));
+        may_be_calibration ? "; the calibration may be of another camera, lens mode or zoom: check "
+                             "it, too"
+                           : ""));
   }
 
   void JudgePrecision() {
@@ -195,7 +204,9 @@ class Judge {
       reasons_.Check("contradicts the layout: " + marker);
     }
     for (const std::string& warning : precision.warnings) {
-      if (warning != camera_advice_) reasons_.Check(warning);
+      const bool says_it_again =
+          precision.parallax_deg < kGoodParallax_deg && IsWeakGeometryWarning(warning);
+      if (warning != camera_advice_ && !says_it_again) reasons_.Check(warning);
     }
     JudgeSteadiness(precision.steadiness);
   }

@@ -163,6 +163,30 @@ TEST_F(ReportKeyNumbers, AModelAdjustedWithOtherMarkerLengthsIsBad) {
   EXPECT_EQ(scale().status, ReportStatus::kGood);
 }
 
+// Noise makes sizes differ where few directions show the markers; then no print is to blame.
+TEST_F(ReportKeyNumbers, SizesThatNoiseMakesDifferAreBlamedOnTheViews) {
+  const std::string warning =
+      "there is hardly any parallax: half of the points are seen within less than 1.9 degrees; "
+      "therefore the points are known to 3.7 mm along the line of sight, but to 0.17 mm across it";
+  ScaleAudit audit;
+  audit.markers.resize(2);
+  for (MarkerScale& marker : audit.markers) marker.sigma = 0.03;
+  example_.scale.relative_spread = 0.031;
+  ReportInput input = example_.Input();
+  input.audit = &audit;
+  const auto scale = [&input] { return FindIn(input, KeyNumberKind::kScale).value(); };
+  EXPECT_EQ(scale().status, ReportStatus::kBad);
+  EXPECT_THAT(scale().advice, HasSubstr("from places more than 30 degrees apart"));
+  input.warnings = {"another", warning};
+  EXPECT_EQ(scale().status, ReportStatus::kBad);
+  EXPECT_EQ(scale().advice, warning);
+  audit.marker_spread = 0.02;
+  EXPECT_THAT(scale().advice, HasSubstr("contradict each other"));
+  audit.marker_spread = 0.0;
+  for (MarkerScale& marker : audit.markers) marker.sigma.reset();
+  EXPECT_THAT(scale().advice, HasSubstr("contradict each other"));
+}
+
 TEST_F(ReportKeyNumbers, AScaleThatIsHardlyKnownIsNotGood) {
   example_.scale.relative_spread = 0.0;
   example_.scale.relative_sigma = 0.0049;

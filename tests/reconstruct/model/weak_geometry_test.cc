@@ -11,6 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // The scene seen by cameras at these places (world, m) that look at `targets`.
 SyntheticScene SeenFrom(SceneKind kind, const std::vector<Eigen::Vector3d>& places,
@@ -74,6 +75,20 @@ TEST(WeakGeometry, LittleParallaxIsNamed) {
   ASSERT_THAT(warnings, ElementsAre(HasSubstr("hardly any parallax")));
   EXPECT_TRUE(IsWeakGeometryWarning(warnings.front()));
   EXPECT_FALSE(IsWeakGeometryWarning("another warning"));
+}
+
+// The camera moves enough, but most markers are readable only from nearly one place.
+TEST(WeakGeometry, MarkersThatMostImagesDoNotShowAreNoLackOfMotion) {
+  constexpr std::size_t kNumNear = 4;
+  const std::vector<Eigen::Vector3d> places = {{0, -2, 0},       {0.06, -2, 0},   {0, -2, 0.06},
+                                               {0.03, -2, 0.03}, {-0.8, -1.8, 0}, {0.8, -1.8, 0}};
+  SyntheticScene scene =
+      SeenFrom(SceneKind::kSail, places, std::vector<Eigen::Vector3d>(places.size(), {0, 0, 0}));
+  for (std::size_t i = kNumNear; i < places.size(); ++i) scene.frames[i].markers.resize(4);
+  const std::vector<std::string> warnings = WarningsOf(scene);
+  ASSERT_THAT(warnings, ElementsAre(HasSubstr("most images do not show their markers")));
+  EXPECT_THAT(warnings.front(), Not(HasSubstr("take images from places")));
+  EXPECT_TRUE(IsWeakGeometryWarning(warnings.front()));
 }
 
 TEST(WeakGeometry, AnUncertainScaleIsNoLackOfParallax) {

@@ -188,6 +188,33 @@ TEST(ClipVerdict, WithoutACalibrationNoneIsBlamed) {
   }
 }
 
+// What the views lack is said once, and nothing else is blamed for it.
+TEST(ClipVerdict, ViewsFromOnePlaceAreNamedOnceAndNotBlamedOnTheCalibration) {
+  const std::string weak =
+      "there is hardly any parallax: half of the points are seen within less than 1.9 degrees; "
+      "therefore the points are known to 3.7 mm along the line of sight, but to 0.17 mm across it";
+  const auto only_reason = [](const ClipFacts& facts) {
+    const Verdict verdict = JudgeClip(facts);
+    EXPECT_EQ(verdict.level, ReportStatus::kBad);
+    EXPECT_EQ(verdict.reasons.size(), 1u);
+    return verdict.reasons.at(0).text;
+  };
+  ClipFacts facts = GoodClip();
+  facts.precision->parallax_deg = 2;
+  facts.precision->warnings = {weak};
+  EXPECT_THAT(only_reason(facts), HasSubstr("moves 2 degrees"));
+  facts.precision->parallax_deg = 40;  // markers that most frames do not show
+  EXPECT_THAT(JudgeClip(facts).reasons, ElementsAre(Field(&VerdictReason::text, weak)));
+  facts.precision.reset();
+  facts.no_precision_because = "the images leave the shape undetermined: " + weak;
+  EXPECT_THAT(only_reason(facts), Not(HasSubstr("calibration")));
+  facts.no_precision_because = "because";
+  facts.shows_one_picture = true;
+  EXPECT_THAT(only_reason(facts), HasSubstr("all frames with markers show the same picture"));
+  facts.no_precision_because.clear();  // without the markers' sizes
+  EXPECT_THAT(only_reason(facts), HasSubstr("all frames with markers show the same picture"));
+}
+
 // From 12 px on, hardly any marker is lost.
 TEST(ClipVerdict, SmallMarkersThatAreFoundAreAHintOnly) {
   ClipFacts facts = GoodClip();
