@@ -1,7 +1,6 @@
 #include "reconstruct/sizes/marker_curvature.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -9,33 +8,21 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
-#include "importer/geometry/units.h"
+#include "importer/geometry/alignment.h"
+#include "reconstruct/geometry/marker_pose.h"
 
 namespace velamap {
 namespace {
 
-// A marker with four corners as a piece of the surface. Its axes run along the sides from corner 1
-// to 2 and from 4 to 1.
-struct Facet {
-  Eigen::Vector3d center_m;
-  Eigen::Matrix3d world_from_facet;
-};
-
-std::optional<Facet> FacetOf(const MarkerBlock& marker) {
+// Where a marker with four corners lies, as a piece of the surface: world_from_marker.
+std::optional<Rigid3> FacetOf(const MarkerBlock& marker) {
   if (marker.corners.size() != kNumCorners) return std::nullopt;
-  std::array<Eigen::Vector3d, kNumCorners> x;
-  Facet facet{Eigen::Vector3d::Zero(), {}};
-  for (int i = 0; i < kNumCorners; ++i) {
-    x[static_cast<std::size_t>(i)] = CornerPosition(marker, i);
-    facet.center_m += x[static_cast<std::size_t>(i)] / kNumCorners;
-  }
-  const Eigen::Vector3d right = x[1] - x[0] + x[2] - x[3], up = x[0] - x[3] + x[1] - x[2];
-  const Eigen::Vector3d normal = right.cross(up).normalized();
-  facet.world_from_facet << right.normalized(), normal.cross(right.normalized()), normal;
-  if (!facet.world_from_facet.allFinite()) return std::nullopt;
-  return facet;
+  std::vector<Eigen::Vector3d> x_in_world;
+  for (int i = 0; i < kNumCorners; ++i) x_in_world.push_back(CornerPosition(marker, i));
+  if (!HasSpread(x_in_world)) return std::nullopt;
+  const auto x_in_marker = CornersInMarker(marker.length_m);
+  return EstimateRigid3({x_in_marker.begin(), x_in_marker.end()}, x_in_world);
 }
 
 // Second derivatives of the height of the surface above a marker, 1/m: xx, xy, yy.
@@ -55,7 +42,8 @@ struct Curvature {
 
 // The quadratic surface through a marker that explains the neighbours. Their tilts and heights,
 // divided by their distances, are taken to be equally exact.
-std::optional<Curvature> CurvatureOf(const Facet& facet, const std::vector<Facet>& neighbors) {
+std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
+                                     const std::vector<Rigid3>& world_from_neighbors) {
   constexpr double kMinCosine = 0.85;      // of the angle between neighbours; farther ones are on
                                            // another face
   constexpr double kMaxUnexplained = 0.3;  // of the squares
@@ -71,11 +59,11 @@ std::optional<Curvature> CurvatureOf(const Facet& facet, const std::vector<Facet
     squares += value * value;
     ++count;
   };
-  for (const Facet& neighbor : neighbors) {
-    const Eigen::Vector3d place =
-        facet.world_from_facet.transpose() * (neighbor.center_m - facet.center_m);
-    const Eigen::Vector3d axis =
-        facet.world_from_facet.transpose() * neighbor.world_from_facet.col(2);
+  const Rigid3 facet_from_world = Inverse(world_from_facet);
+  for (const Rigid3& world_from_neighbor : world_from_neighbors) {
+    const Rigid3 facet_from_neighbor = facet_from_world * world_from_neighbor;
+    const Eigen::Vector3d& place = facet_from_neighbor.translation;
+    const Eigen::Vector3d axis = facet_from_neighbor.rotation * Eigen::Vector3d::UnitZ();
     const double distance = place.head<2>().norm();
     if (!(axis.z() > kMinCosine) || !(distance > std::abs(place.z()))) continue;
     const double x = place.x() / distance, y = place.y() / distance;
@@ -102,7 +90,7 @@ ChordSummary SetChords(MarkerState* state) {
   // Paper may stay flat on a surface that bends less, and the print tolerance is larger than the
   // shortening of such a side, 0.04 %.
   constexpr double kMinBend = 0.1;  // side by radius
-  std::vector<std::optional<Facet>> facets;
+  std::vector<std::optional<Rigid3>> facets;
   for (const MarkerBlock& marker : state->markers) facets.push_back(FacetOf(marker));
   ChordSummary summary;
   int num_markers = 0;
@@ -111,10 +99,11 @@ ChordSummary SetChords(MarkerState* state) {
     marker.chord_ratios.fill(1.0);
     ++num_markers;
     if (!facets[i] || marker.is_rigid) continue;
-    std::vector<Facet> neighbors;
+    std::vector<Rigid3> neighbors;
     for (std::size_t j = 0; j < facets.size(); ++j) {
       if (j == i || !facets[j] || state->markers[j].part != marker.part) continue;
-      if ((facets[j]->center_m - facets[i]->center_m).norm() < kReachSides * marker.length_m) {
+      if ((facets[j]->translation - facets[i]->translation).norm() <
+          kReachSides * marker.length_m) {
         neighbors.push_back(*facets[j]);
       }
     }
