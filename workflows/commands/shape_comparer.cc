@@ -10,6 +10,7 @@
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/replacement.h"
 #include "importer/text/output_date.h"
 #include "workflows/commands/commands.h"
@@ -179,11 +180,23 @@ void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
   }
 }
 
+// A page or a table is another option's.
+void CheckIsPly(const char* option, const std::string& path) {
+  const std::string extension = LowerExtension(path);
+  if (extension.empty() || extension == ".ply") return;
+  throw InputError(fmt::format(
+      "{}: '{}' would hold a PLY file; name it .ply, or give --comparison_path for a page "
+      "(comparison.html), --csv_path or --json_path for the figures",
+      option, path));
+}
+
 void Validate(ShapeComparerCommandOptions* options) {
   RefuseUnusedOptions(*options);
   if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }
+  CheckIsPly("--output_path", options->paths.output_path);
+  CheckIsPly("--surface_path", options->surface_path);
   const AlignmentOptions& alignment = options->comparison.alignment;
   if (!alignment.marker_ids.empty() && alignment.method != AlignmentMethod::kMarkers) {
     throw InputError("--align_markers: needs --align markers");

@@ -291,6 +291,8 @@ TEST_F(ShapeComparerTest, OutputThatCannotBeWritten) {
         Compare("b/shape", {option, path("layout.yml/c"), "--layout_path", path("layout.yml")}), 2,
         "layout.yml: cannot be written");
   }
+  ExpectError(Compare("b/shape", {"--output_path", path("c.html")}), 2,
+              "would hold a PLY file; name it .ply, or give --comparison_path");
   ExpectError(Compare("b/shape", {"--surface_path", path("c")}), 2, "needs --layout_path");
   ExpectError(Compare("b/shape", {"--csv_path", path("c"), "--json_path", path("c")}), 2,
               "--json_path");
