@@ -60,7 +60,8 @@ KeyNumber ImagesNumber(const ReportInput& input) {
   const std::size_t num_used = input.metric_model.images.size();
   const std::size_t num_all = num_used + input.images_left_out.size();
   return {KeyNumberKind::kImages, fmt::format("{} of {}", num_used, num_all),
-          "used; the others are listed below with reasons", ReportStatus::kNone};
+          num_used == num_all ? "used" : "used; the others are listed below with reasons",
+          ReportStatus::kNone};
 }
 
 KeyNumber ErrorNumber(const Statistics& error_px) {

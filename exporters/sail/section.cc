@@ -232,11 +232,7 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 }  // namespace
 
 std::string MissingEndsText(const Section& section) {
-  const int luff = section.num_missing_at_luff, leech = section.num_missing_at_leech;
-  if (luff + leech == 0) return "";
-  const auto [first, end] = luff > 0 ? std::pair{luff, "luff"} : std::pair{leech, "leech"};
-  return fmt::format("{} marker{} missing at the {}{}", first, first == 1 ? "" : "s", end,
-                     luff > 0 && leech > 0 ? fmt::format(" and {} at the leech", leech) : "");
+  return MissingEndsText(section.num_missing_at_luff, section.num_missing_at_leech);
 }
 
 SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -164,6 +165,15 @@ int BulgeSide(const MarkerShape& shape, const Layout& layout, const Eigen::Vecto
   }
   if (std::abs(bulge_m) <= kMinBulge * chord_m) return 0;
   return bulge_m > 0 ? 1 : -1;
+}
+
+std::string MissingEndsText(int num_at_luff, int num_at_leech) {
+  if (num_at_luff + num_at_leech == 0) return "";
+  const auto [first, end] =
+      num_at_luff > 0 ? std::pair{num_at_luff, "luff"} : std::pair{num_at_leech, "leech"};
+  return fmt::format(
+      "{} marker{} missing at the {}{}", first, first == 1 ? "" : "s", end,
+      num_at_luff > 0 && num_at_leech > 0 ? fmt::format(" and {} at the leech", num_at_leech) : "");
 }
 
 }  // namespace velamap

@@ -61,4 +61,7 @@ std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& l
 // chords, or if no line has three markers.
 int BulgeSide(const MarkerShape& shape, const Layout& layout, const Eigen::Vector3d& direction);
 
+// "2 markers missing at the luff and 1 at the leech" of a line, or nothing for a whole one.
+std::string MissingEndsText(int num_at_luff, int num_at_leech);
+
 }  // namespace velamap

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unsupported/Eigen/Splines>
 
+#include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 
@@ -70,13 +71,12 @@ void NoteGaps(const SurfaceLine& line, const PresentMarkers& present,
         "line {}: gap of {:.3g} m between markers {} and {} ({} of the layout missing), filled",
         line.name, gap_m, present.marker_ids[k - 1], present.marker_ids[k], num_missing));
   }
-  const std::size_t missing_luff = present.places.front();
-  const std::size_t missing_leech = line.markers.size() - 1 - present.places.back();
-  if (missing_luff + missing_leech > 0) {
-    notes->push_back(fmt::format(
-        "line {}: {} markers missing at the luff and {} at the leech; the surface follows the "
-        "neighbouring lines there",
-        line.name, missing_luff, missing_leech));
+  const std::string missing =
+      MissingEndsText(static_cast<int>(present.places.front()),
+                      static_cast<int>(line.markers.size() - 1 - present.places.back()));
+  if (!missing.empty()) {
+    notes->push_back(fmt::format("line {}: {}; the surface follows the neighbouring lines there",
+                                 line.name, missing));
   }
 }
 

@@ -11,6 +11,8 @@ const PICTURE_LAYERS = [
   {name: 'ids', colour: '#ffffff', checked: false},
 ];
 
+const counted = (number, one, many) => `${number} ${number === 1 ? one : many}`;
+
 // Factor that makes the larger error vectors visible.
 function errorFactor(picture) {
   const lengths = picture.points.map(([, , , dx, dy]) => Math.hypot(dx, dy));
@@ -92,7 +94,8 @@ function fillPicture(picture) {
   byId('picture_caption').textContent =
       `${picture.name}: ${picture.points.length} detected corners (circles) and their projections ` +
       `(crosses); lines are the differences, ${factor} times as long. ` +
-      `${picture.rejected.length} more corners were rejected, and ${picture.not_detected.length} markers ` +
-      'of the shape face the camera without having been detected.' +
+      `${counted(picture.rejected.length, 'more corner was', 'more corners were')} rejected, and ` +
+      `${counted(picture.not_detected.length, 'marker of the shape faces', 'markers of the shape face')} ` +
+      'the camera without having been detected.' +
       (picture.problem ? ` No picture: ${picture.problem}.` : '');
 }

@@ -220,6 +220,7 @@ TEST_F(ReportKeyNumbers, AScaleOfUnknownSigmaIsNotGood) {
 
 TEST_F(ReportKeyNumbers, ImagesCountThoseLeftOut) {
   ReportInput input = example_.Input();
+  EXPECT_EQ(FindIn(input, KeyNumberKind::kImages).value().meaning, "used");
   input.images_left_out = {{"a.jpg", "blurred"}};
   EXPECT_EQ(FindIn(input, KeyNumberKind::kImages).value().value, "4 of 5");
 }
