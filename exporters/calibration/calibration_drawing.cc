@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "exporters/scale/round_number.h"
+
 namespace velamap {
 namespace {
 
@@ -61,8 +63,8 @@ ResidualDrawing DrawResiduals(const CameraCalibration& calibration) {
   }
   ResidualDrawing drawing;
   // Residuals without a pattern must look small.
-  drawing.magnification = std::min(
-      cell_px / longest_px, kArrowOfRms * side_px / std::max(calibration.error_px.rms, 1e-6));
+  drawing.magnification = RoundDown(std::min(
+      cell_px / longest_px, kArrowOfRms * side_px / std::max(calibration.error_px.rms, 1e-6)));
   std::string content;
   const std::size_t stride = calibration.residuals.size() / kMaxNumDots + 1;
   for (std::size_t i = 0; i < calibration.residuals.size(); i += stride) {

@@ -1,4 +1,4 @@
-// Round numbers for the bins of histograms.
+// Round numbers for the bins of histograms and for magnifications.
 
 #pragma once
 
@@ -15,5 +15,8 @@ inline double RoundUp(double x) {
   }
   return 10 * power;
 }
+
+// The largest of 1, 2 or 5 times a power of ten that is at most `x`, which is positive.
+inline double RoundDown(double x) { return 1.0 / RoundUp(1.0 / x); }
 
 }  // namespace velamap

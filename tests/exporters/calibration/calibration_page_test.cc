@@ -14,6 +14,7 @@ namespace velamap {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -67,6 +68,9 @@ TEST(CalibrationPage, SaysTheVerdictFirstAndEverythingOnce) {
                           HasSubstr("SIMPLE_RADIAL: taken"), HasSubstr("focal length, px"),
                           HasSubstr("12 of the 12 pictures that show the board were used"),
                           HasSubstr("</html>"), Not(HasSubstr("{{"))));
+  // A scale that can be read.
+  EXPECT_THAT(page, ContainsRegex("drawn [125]0* times as long"));
+  EXPECT_THAT(page, HasSubstr("only where its error there is smaller by more than chance"));
   EXPECT_LT(page.find("id=\"verdict\""), page.find("id=\"camera_title\""));
 }
 
