@@ -247,7 +247,10 @@ void MarkerAdjuster::Finish() {
   uncertainty.variance_factor = calibration.variance_factor;
   uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
   uncertainty.correlation_factor = correlation_factor;
-  uncertainty.rolling_shutter_sigma_s *= ShutterCorrelationFactor(solution_, *linearization);
+  if (solution_.weights.frees_rolling_shutter) {
+    uncertainty.rolling_shutter_sigma_s =
+        ShutterSigma(uncertainty.rolling_shutter_sigma_s, solution_, *linearization);
+  }
   uncertainty.calibration = TestCalibration(solution_.model, *linearization);
   uncertainty.calibration.shape_change_in_sigmas =
       uncertainty.calibration.shape_change_m /

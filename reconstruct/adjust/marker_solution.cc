@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "importer/base/error.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/problem/error_correlation.h"
 #include "reconstruct/problem/marker_uncertainty.h"
+#include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
@@ -65,6 +67,31 @@ bool HoldFoldedDistortion(MarkerSolution* solution) {
   return true;
 }
 
+// How far 1 sigma of the velocity that the corners of an image share shifts them, in sigmas of the
+// corners: one column for an error of the velocity along x, one for one along y.
+RowMajorMatrix SharedShiftErrors(const MarkerSolution& solution,
+                                 const MarkerLinearization& linearization) {
+  const MarkerProblem& problem = linearization.problem;
+  std::map<ImageId, const ModelImage*> images;
+  for (const ModelImage& image : solution.model.images) images[image.image_id] = &image;
+  RowMajorMatrix errors =
+      RowMajorMatrix::Zero(2 * static_cast<Eigen::Index>(problem.corners.size()), 2);
+  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
+    const auto& [image_id, point2D_idx] = problem.corners[i].second;
+    const auto motions = solution.corner_errors->motions.find(image_id);
+    if (motions == solution.corner_errors->motions.end()) continue;
+    const ModelImage& image = *images.at(image_id);
+    const RowMotion motion =
+        RowMotionOf(solution.model.cameras.at(image.camera_id),
+                    image.points2D[point2D_idx].x_in_image_px, motions->second.at(point2D_idx));
+    const double shift_px =
+        linearization.state.rolling_shutter_s * motion.row * motion.motion.shared_sigma_px_s;
+    const auto row = 2 * static_cast<Eigen::Index>(i);
+    errors(row, 0) = errors(row + 1, 1) = shift_px / problem.corner_sigmas_px[i];
+  }
+  return errors;
+}
+
 }  // namespace
 
 void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution* solution) {
@@ -116,14 +143,16 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
       GroupImages(solution.model, kNumCorrelationGroups), solution.options.num_threads);
 }
 
-double ShutterCorrelationFactor(const MarkerSolution& solution,
-                                const MarkerLinearization& linearization) {
+double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
+                    const MarkerLinearization& linearization) {
   const auto& [state, problem, jacobian, covariance] = linearization;
   const int column = GlobalColumn(problem, &state.rolling_shutter_s);
-  if (column < 0) return 1.0;
-  return GlobalCorrelationFactor(state, problem, jacobian, covariance,
-                                 GroupImages(solution.model, kNumCorrelationGroups), column,
-                                 solution.options.num_threads);
+  const double factor = GlobalCorrelationFactor(state, problem, jacobian, covariance,
+                                                GroupImages(solution.model, kNumCorrelationGroups),
+                                                column, solution.options.num_threads);
+  const double by_motion_s = SigmaByImageErrors(problem, jacobian, covariance, column,
+                                                SharedShiftErrors(solution, linearization));
+  return std::hypot(factor * independent_sigma_s, by_motion_s);
 }
 
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {

@@ -61,10 +61,11 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
 double ShapeCorrelationFactor(const MarkerSolution& solution,
                               const MarkerLinearization& linearization);
 
-// The factor for the sigma of the time from the first row to the last, because cloth that moves
-// between two frames moves its markers as a rolling shutter does. 1 where that time is held.
-double ShutterCorrelationFactor(const MarkerSolution& solution,
-                                const MarkerLinearization& linearization);
+// 1 sigma of the time from the first row to the last, which varies. It is larger than that by
+// independent errors, because cloth that moves between two frames moves its markers as a rolling
+// shutter does, and because all corners of an image share errors of their velocity.
+double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
+                    const MarkerLinearization& linearization);
 
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution);

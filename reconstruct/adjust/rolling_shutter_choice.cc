@@ -42,9 +42,9 @@ bool IsDetermined(MarkerSolution trial) {
   const MarkerState& state = linearization->state;
   const double variance = GlobalCovariance(linearization->problem, linearization->covariance,
                                            &state.rolling_shutter_s)(0, 0);
-  const double factor = std::max(ShapeCorrelationFactor(trial, *linearization),
-                                 ShutterCorrelationFactor(trial, *linearization));
-  const double sigma_s = std::sqrt(variance) * factor;
+  const double sigma_s =
+      std::max(std::sqrt(variance) * ShapeCorrelationFactor(trial, *linearization),
+               ShutterSigma(std::sqrt(variance), trial, *linearization));
   const double sigmas = state.rolling_shutter_s / sigma_s;
   const bool is_determined = sigmas * sigmas > InformationCriterion(1, trial) &&
                              std::abs(state.rolling_shutter_s) > kFastest_s;

@@ -183,4 +183,31 @@ double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& pr
   return std::max(1.0, excess.factor);
 }
 
+double SigmaByImageErrors(const MarkerProblem& problem, const MarkerJacobian& jacobian,
+                          const MarkerCovariance& covariance, int column,
+                          const RowMajorMatrix& errors) {
+  ParameterColumns by_gradient = ZeroColumns(covariance, 1);
+  by_gradient.of_globals(column, 0) = 1.0;
+  MultiplyByCovariance(covariance, &by_gradient);
+  std::map<ImageId, Eigen::VectorXd> movements;
+  Eigen::Index row = 0;
+  for (const ResidualJacobian& block : jacobian.corners) {
+    const auto marker = static_cast<std::size_t>(block.marker_idx);
+    Eigen::VectorXd by_residual =
+        block.by_marker *
+        by_gradient.of_points.middleRows(covariance.begins[marker], block.by_marker.cols());
+    for (const auto& [first, derivatives] : block.by_globals) {
+      by_residual += derivatives * by_gradient.of_globals.middleRows(first, derivatives.cols());
+    }
+    const ImageId image_id = problem.corners[static_cast<std::size_t>(row / 2)].second.image_id;
+    const auto movement =
+        movements.try_emplace(image_id, Eigen::VectorXd::Zero(errors.cols())).first;
+    movement->second += errors.middleRows(row, block.NumRows()).transpose() * by_residual;
+    row += block.NumRows();
+  }
+  double variance = 0.0;
+  for (const auto& [image_id, movement] : movements) variance += movement.squaredNorm();
+  return std::sqrt(variance);
+}
+
 }  // namespace velamap

@@ -221,6 +221,8 @@ class ProblemBuilder {
       if (motions != nullptr) {
         observation.motion =
             RowMotionOf(camera, observation.x_in_image_px, motions->at(element.point2D_idx));
+        observation.sigma_px = std::hypot(observation.sigma_px,
+                                          ShiftSigma(observation.motion, state_.rolling_shutter_s));
       }
       result_.corners.emplace_back(point3D_id, element);
       result_.corner_sigmas_px.push_back(observation.sigma_px);

@@ -1,6 +1,7 @@
 #include "reconstruct/problem/rolling_shutter.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <ceres/jet.h>
 
@@ -20,7 +21,8 @@ RowMotion RowMotionOf(const Camera& camera, const Eigen::Vector2d& x_in_image_px
 RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s) {
   using Jet = ceres::Jet<double, 1>;
   using JetVector = Eigen::Matrix<Jet, 2, 1>;
-  const auto& [velocity_px_s, acceleration_px_s2] = motion.motion;
+  const Eigen::Vector2d& velocity_px_s = motion.motion.velocity_px_s;
+  const Eigen::Vector2d& acceleration_px_s2 = motion.motion.acceleration_px_s2;
   const Jet readout_s(rolling_shutter_s, 0);
   // A corner at frame time t is seen at t + readout * row(t): derivatives of that by t.
   const Jet time_rate = 1.0 + readout_s * motion.row_by_px.dot(velocity_px_s);
@@ -33,6 +35,10 @@ RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s) {
   const JetVector shift =
       since_middle_s * velocity - 0.5 * since_middle_s * since_middle_s * acceleration;
   return {{shift.x().a, shift.y().a}, {shift.x().v[0], shift.y().v[0]}};
+}
+
+double ShiftSigma(const RowMotion& motion, double rolling_shutter_s) {
+  return std::abs(rolling_shutter_s * motion.row) * motion.motion.velocity_sigma_px_s;
 }
 
 void MoveToMiddleRow(double rolling_shutter_s, const CornerMotions& motions, Model* model) {

@@ -34,6 +34,9 @@ struct RowShift {
 // frame.
 RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s);
 
+// 1 sigma of a coordinate of the shift, px, due to that of the velocity.
+double ShiftSigma(const RowMotion& motion, double rolling_shutter_s);
+
 // Corrects the image points for the rolling shutter: moves each to its place at the time when the
 // middle row is read.
 void MoveToMiddleRow(double rolling_shutter_s, const CornerMotions& motions, Model* model);

@@ -2,19 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "reconstruct/registration/motion_field.h"
 #include "reconstruct/registration/repeated_frames.h"
+#include "reconstruct/registration/track_smoothing.h"
 
 namespace velamap {
 namespace {
 
 // Over a longer time, a hand-held camera may have reversed its motion.
 constexpr double kLongestStep_s = 0.15;
+// Number of frames before and after one that tell how its corners move. What more distant ones
+// would add is noise, or motion that has nothing to do with that in this frame.
+constexpr std::size_t kReach = 8;
+
+using RowMajorTracks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 struct TimedFrame {
   const FrameDetections* detections = nullptr;
@@ -24,102 +29,136 @@ struct TimedFrame {
 // That frame and those around it, in the order of time.
 using FrameWindow = std::vector<TimedFrame>;
 
-// Weights of the values at these times, one of which is 0. The sums weighted by the columns are the
-// first and the second derivative at time 0 of the polynomial through the values.
-Eigen::MatrixX2d DerivativeWeights(const std::vector<double>& times_s) {
-  const auto size = static_cast<Eigen::Index>(times_s.size());
-  const double unit_s = times_s.back() - times_s.front();
-  const Eigen::ArrayXd times = Eigen::Map<const Eigen::ArrayXd>(times_s.data(), size) / unit_s;
-  Eigen::MatrixXd powers(size, size);
-  for (Eigen::Index power = 0; power < size; ++power)
-    powers.row(power) = times.pow(static_cast<double>(power)).matrix().transpose();
-  Eigen::MatrixX2d derivatives = Eigen::MatrixX2d::Zero(size, 2);
-  derivatives(1, 0) = 1 / unit_s;
-  derivatives(2, 1) = 2 / (unit_s * unit_s);
-  return powers.partialPivLu().solve(derivatives);
-}
+// The weights of places at the same times are the same for all markers of a frame.
+class PlaceWeights {
+ public:
+  explicit PlaceWeights(const TrackModel& model) : model_(model) {}
 
-// Where the mean of a marker's corners is, and when.
-struct Sighting {
-  double time_s = 0.0;
-  Eigen::Vector2d place_px;
+  const DerivativeWeights& At(const std::vector<double>& times_s) {
+    auto known = by_times_.find(times_s);
+    if (known == by_times_.end()) {
+      known = by_times_.emplace(times_s, WeighPlaces(times_s, model_)).first;
+    }
+    return known->second;
+  }
+
+ private:
+  TrackModel model_;
+  std::map<std::vector<double>, DerivativeWeights> by_times_;
 };
 
-// The sightings that give a marker's motion: in the nearest frames of the window that show it,
-// before and after. One side has at most one more than the other, because a polynomial through
-// frames of one side is several times as noisy. At the end of a marker's visibility, these are the
-// frame itself and the next two.
-std::vector<Sighting> SightingsOf(const FrameWindow& window, int marker_id) {
-  std::vector<Sighting> all;
-  std::ptrdiff_t num_before = 0;
+// The motion of the mean of a marker's corners. Motions of single corners are twice as noisy, and
+// noise in the velocities makes the estimated shutter time too short.
+struct MarkerMotion {
+  MotionVector motion;
+  // Variances of the velocity: due to the errors of the corners, which differ between markers, and
+  // due to what happens between the frames, which they share.
+  double noise_variance = 0.0;
+  double common_variance = 0.0;
+};
+
+// Nothing unless the marker is seen in four frames (in three where there are no more) and, where
+// there are such, before and after this one.
+std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, int marker_id,
+                                          PlaceWeights* weights) {
+  const std::size_t min_num_frames = std::clamp<std::size_t>(window.size(), 3, 4);
+  std::vector<double> times_s;
+  Eigen::Matrix2Xd places_px(2, static_cast<Eigen::Index>(window.size()));
   for (const TimedFrame& frame : window) {
     const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker_id);
     if (seen == nullptr) continue;
-    all.push_back({frame.time_s, CornerMean(*seen)});
-    if (frame.time_s < 0) ++num_before;
+    places_px.col(static_cast<Eigen::Index>(times_s.size())) = CornerMean(*seen);
+    times_s.push_back(frame.time_s);
   }
-  const std::ptrdiff_t num_after = static_cast<std::ptrdiff_t>(all.size()) - num_before - 1;
-  const std::ptrdiff_t reach = std::max<std::ptrdiff_t>(2, std::min(num_before, num_after) + 1);
-  const auto middle = all.begin() + num_before;
-  return {middle - std::min(reach, num_before), middle + 1 + std::min(reach, num_after)};
-}
-
-// The motion of the mean of a marker's corners. Motions of single corners are twice as noisy, and
-// noise in the velocities makes the estimated shutter time too short. Nothing unless the marker is
-// seen in three frames and, where there are such, before and after this one.
-std::optional<MotionVector> MeasureMotion(const FrameWindow& window, int marker_id) {
-  constexpr std::size_t kMinNumFrames = 3;
-  const std::vector<Sighting> sightings = SightingsOf(window, marker_id);
-  if (sightings.size() < kMinNumFrames) return std::nullopt;
-  std::vector<double> times_s;
-  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(sightings.size()));
-  for (const Sighting& sighting : sightings) {
-    places.col(static_cast<Eigen::Index>(times_s.size())) = sighting.place_px;
-    times_s.push_back(sighting.time_s);
-  }
+  if (times_s.size() < min_num_frames) return std::nullopt;
   const auto is_between = [](double first_s, double last_s) { return first_s < 0 && last_s > 0; };
   if (is_between(window.front().time_s, window.back().time_s) &&
       !is_between(times_s.front(), times_s.back())) {
     return std::nullopt;
   }
-  const Eigen::Matrix2d derivatives = places * DerivativeWeights(times_s);
-  return MotionVector(derivatives.reshaped());
+  const DerivativeWeights& of_places = weights->At(times_s);
+  const Eigen::Matrix2d derivatives =
+      places_px.leftCols(of_places.values.rows()) * of_places.values;
+  return MarkerMotion{MotionVector(derivatives.reshaped()), of_places.noise_variance,
+                      of_places.motion_variance};
 }
 
 // Nothing for fewer than three markers.
 std::optional<MotionField> FitField(const FrameDetections& frame,
-                                    const std::vector<std::optional<MotionVector>>& measured) {
+                                    const std::vector<std::optional<MarkerMotion>>& measured) {
   constexpr std::size_t kMinNumMarkers = 3;
   std::vector<PlacedMotion> motions;
   double sum_of_sides_px = 0.0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i]) continue;
-    motions.push_back({CornerMean(frame.markers[i]), *measured[i]});
+    motions.push_back({CornerMean(frame.markers[i]), measured[i]->motion});
     sum_of_sides_px += QuadMeanSide(frame.markers[i].corners_in_image_px);
   }
   if (motions.size() < kMinNumMarkers) return std::nullopt;
   return MotionField(motions, sum_of_sides_px / static_cast<double>(motions.size()));
 }
 
-// Empty where the neighbouring frames show too few markers.
-std::vector<CornerMotion> MotionsOf(const FrameDetections& frame, const FrameWindow& window) {
-  std::vector<std::optional<MotionVector>> measured;
-  for (const MarkerDetection& marker : frame.markers) {
-    measured.push_back(MeasureMotion(window, marker.marker_id));
+struct FrameMotion {
+  const DatabaseImage* image = nullptr;
+  std::vector<std::optional<MarkerMotion>> measured;  // by marker
+  std::optional<MotionField> field;
+
+  // By how much marker `i` is faster than the field.
+  Eigen::Vector2d OwnVelocity(std::size_t i) const {
+    const Eigen::Vector2d place_px = CornerMean(image->detections.markers[i]);
+    return (measured[i]->motion - field->At(place_px)).head<2>();
   }
-  const std::optional<MotionField> field = FitField(frame, measured);
+};
+
+// Variance of the coordinates of the markers' own velocities beyond noise; infinite where no frame
+// has more markers than it takes to determine the field.
+double OwnVariance(const std::vector<FrameMotion>& frames) {
+  double sum_of_squares = 0.0, sum_of_noise = 0.0, sum_of_degrees = 0.0;
+  for (const FrameMotion& frame : frames) {
+    if (!frame.field) continue;
+    double num_markers = 0.0, squares = 0.0, noise = 0.0;
+    for (std::size_t i = 0; i < frame.measured.size(); ++i) {
+      if (!frame.measured[i]) continue;
+      num_markers += 1.0;
+      squares += 0.5 * frame.OwnVelocity(i).squaredNorm();
+      noise += frame.measured[i]->noise_variance;
+    }
+    const double num_degrees = num_markers - (1 + MotionField::kNumTerms);
+    if (!(num_degrees > 0)) continue;
+    sum_of_squares += squares;
+    sum_of_noise += num_degrees / num_markers * noise;
+    sum_of_degrees += num_degrees;
+  }
+  if (sum_of_degrees == 0) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, (sum_of_squares - sum_of_noise) / sum_of_degrees);
+}
+
+// Empty where the neighbouring frames show too few markers.
+std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_variance) {
   std::vector<CornerMotion> motions;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    if (!measured[i] && !field) return {};
-    const MarkerDetection& marker = frame.markers[i];
-    for (const Eigen::Vector2d& x_in_image_px : marker.corners_in_image_px) {
-      MotionVector motion = field ? field->At(x_in_image_px) : *measured[i];
-      // Within a marker, the field says how the velocity changes. Accelerations are too noisy for
-      // more than the field.
-      if (field && measured[i]) {
-        motion.head<2>() += (*measured[i] - field->At(CornerMean(marker))).head<2>();
-      }
-      motions.push_back({motion.head<2>(), motion.tail<2>()});
+  double common_variance = 0.0;  // the field's
+  for (const auto& measured : frame.measured) {
+    if (measured) common_variance = std::max(common_variance, measured->common_variance);
+  }
+  for (std::size_t i = 0; i < frame.measured.size(); ++i) {
+    const std::optional<MarkerMotion>& measured = frame.measured[i];
+    if (!measured && !frame.field) return {};
+    // Of the marker's own velocity, what is known. Accelerations are too noisy for more than the
+    // field.
+    MotionVector own = MotionVector::Zero();
+    double unknown_variance = std::isfinite(own_variance) ? own_variance : 0.0;
+    if (measured) {
+      const double noise = measured->noise_variance;
+      const double noise_share = noise > 0 ? noise / (own_variance + noise) : 0.0;
+      if (frame.field) own.head<2>() = (1.0 - noise_share) * frame.OwnVelocity(i);
+      unknown_variance = (1.0 - noise_share) * noise;
+    }
+    for (const Eigen::Vector2d& x_px : frame.image->detections.markers[i].corners_in_image_px) {
+      // Within a marker, the field says how the velocity changes.
+      const MotionVector motion = frame.field ? frame.field->At(x_px) + own : measured->motion;
+      motions.push_back({motion.head<2>(), motion.tail<2>(),
+                         std::sqrt(common_variance + unknown_variance),
+                         std::sqrt(common_variance)});
     }
   }
   return motions;
@@ -169,29 +208,81 @@ FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx
   return window;
 }
 
-// As many frames as it takes to follow a hand that trembles at 6 Hz; more would only add noise.
-FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx) {
-  constexpr double kSlow_s = 0.025;  // mean step from frame to frame
-  FrameWindow window = WindowAround(exposures, idx, 2);
-  const double span_s = window.back().time_s - window.front().time_s;
-  const bool is_slow = span_s > kSlow_s * static_cast<double>(window.size() - 1);
-  return is_slow ? WindowAround(exposures, idx, 4) : window;
+// The tracks of the markers that all frames of a window show, where the frame itself is neither its
+// first nor its last.
+std::optional<TrackWindow> TracksIn(const FrameWindow& window) {
+  if (window.size() < kMinTimesOfWindow || !(window.front().time_s < 0) ||
+      !(window.back().time_s > 0)) {
+    return std::nullopt;
+  }
+  TrackWindow tracks;
+  for (const TimedFrame& frame : window) {
+    if (frame.time_s == 0) tracks.middle_idx = tracks.times_s.size();
+    tracks.times_s.push_back(frame.time_s);
+  }
+  std::vector<double> places_px;  // row by row
+  for (const MarkerDetection& marker : window[tracks.middle_idx].detections->markers) {
+    Eigen::Matrix2Xd track_px(2, static_cast<Eigen::Index>(window.size()));
+    Eigen::Index num_seen = 0;
+    for (const TimedFrame& frame : window) {
+      const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker.marker_id);
+      if (seen == nullptr) break;
+      track_px.col(num_seen++) = CornerMean(*seen);
+    }
+    if (num_seen < track_px.cols()) continue;
+    for (const auto row : track_px.rowwise())
+      places_px.insert(places_px.end(), row.begin(), row.end());
+  }
+  if (places_px.empty()) return std::nullopt;
+  const auto num_times = static_cast<Eigen::Index>(window.size());
+  tracks.places_px = Eigen::Map<const RowMajorTracks>(
+      places_px.data(), static_cast<Eigen::Index>(places_px.size()) / num_times, num_times);
+  return tracks;
+}
+
+// From frames spread over the video. Markers that pass quickly are seen in a few frames only.
+TrackModel FitTrackModel(const std::vector<Exposure>& exposures) {
+  constexpr std::size_t kMaxNumWindows = 200;
+  const std::size_t stride = 1 + exposures.size() / kMaxNumWindows;
+  for (const std::size_t reach : {kReach, kReach / 2, kReach / 4}) {
+    std::vector<TrackWindow> windows;
+    for (std::size_t i = stride / 2; i < exposures.size(); i += stride) {
+      if (auto tracks = TracksIn(WindowAround(exposures, i, reach))) {
+        windows.push_back(std::move(*tracks));
+      }
+    }
+    if (!windows.empty()) return FitTrackModel(windows);
+  }
+  return {};
 }
 
 }  // namespace
 
 CornerMotions CornerMotionsOf(const std::vector<DatabaseImage>& images) {
   const std::vector<Exposure> exposures = ExposuresOf(images);
-  CornerMotions motions;
+  const TrackModel model = FitTrackModel(exposures);
+  std::vector<FrameMotion> frames;
   for (std::size_t i = 0; i < exposures.size(); ++i) {
-    FrameWindow window = WindowAround(exposures, i);
-    for (const DatabaseImage* frame : exposures[i].frames) {
+    FrameWindow window = WindowAround(exposures, i, kReach);
+    PlaceWeights weights(model);
+    for (const DatabaseImage* image : exposures[i].frames) {
       for (TimedFrame& timed : window) {
-        if (timed.time_s == 0) timed.detections = &frame->detections;
+        if (timed.time_s == 0) timed.detections = &image->detections;
       }
-      std::vector<CornerMotion> of_image = MotionsOf(frame->detections, window);
-      if (!of_image.empty()) motions[frame->image_id] = std::move(of_image);
+      FrameMotion frame;
+      frame.image = image;
+      for (const MarkerDetection& marker : image->detections.markers) {
+        frame.measured.push_back(MeasureMotion(window, marker.marker_id, &weights));
+      }
+      frame.field = FitField(image->detections, frame.measured);
+      frames.push_back(std::move(frame));
     }
+  }
+  const double own_variance = OwnVariance(frames);
+  CornerMotions motions;
+  for (const FrameMotion& frame : frames) {
+    std::vector<CornerMotion> of_image = MotionsOf(frame, own_variance);
+    if (!of_image.empty()) motions[frame.image->image_id] = std::move(of_image);
   }
   return motions;
 }

@@ -15,19 +15,25 @@ namespace velamap {
 struct CornerMotion {
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d acceleration_px_s2 = Eigen::Vector2d::Zero();
+  // 1 sigma of a coordinate of the velocity, and the part of it that all corners of the image
+  // share. 0: unknown.
+  double velocity_sigma_px_s = 0.0;
+  double shared_sigma_px_s = 0.0;
 };
 
 // By image and point2D_idx.
 using CornerMotions = std::map<ImageId, std::vector<CornerMotion>>;
 
 // Motions relative to the picture, whether camera, boat or cloth moves. The motion of a marker is
-// that of the polynomial through its places in the frame and in two, or four in slow videos, before
-// and as many after it. How it changes within a marker, and the motion of markers that the
+// that of a smooth path through its places in the frame and in up to eight before and after it
+// (track_smoothing.h). How it changes within a marker, and the motion of markers that the
 // neighbouring frames do not show, follow from the field of all markers of the image
-// (motion_field.h). For a shake of 6 Hz at 30 Hz, the straight line through two frames is 24 % too
-// slow, the polynomial through five 7 %, that through nine 0.7 %. Frames more than 0.15 s apart are
-// not used together, and repeated ones (repeated_frames.h) count as one frame at the time of the
-// first. Photographs have no motions. Images without motions are missing.
+// (motion_field.h). By how much the velocity of a marker differs from that of the field counts as
+// far as it exceeds the noise: with E(velocity | frames) for the velocity, its errors do not bias
+// what is estimated from it (Carroll et al., "Measurement error in nonlinear models", 2006, on
+// Berkson errors and regression calibration). Frames more than 0.15 s apart are not used together,
+// and repeated ones (repeated_frames.h) count as one frame at the time of the first. Photographs
+// have no motions. Images without motions are missing.
 CornerMotions CornerMotionsOf(const std::vector<DatabaseImage>& images);
 
 }  // namespace velamap
