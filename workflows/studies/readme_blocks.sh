@@ -203,6 +203,18 @@ block_found_cameras() {
   printf '\nFrom %s.\n' "$(made_by found_cameras.csv)"
 }
 
+block_unknown_cameras() {
+  echo "| clip, lens | focal length, widths | camera found | its focal length | its error | shape without, with a calibration | ratio |"
+  echo "|---|---|---|---|---|---|---|"
+  table unknown_cameras.csv '
+    { printf "| %s, %s | %s | %s | %s ± %s px | %s %% | %s, %s mm | %s |\n", cell("scene"), cell("lens"),
+        num(cell("focal_widths"), 2), cell("model"), num(cell("focal_px"), "d"),
+        num(cell("focal_sigma_px"), "as_is"), num(cell("focal_error_percent"), "+2"),
+        num(cell("distance_after_scaling_mm"), 2),
+        num(cell("distance_after_scaling_calibrated_mm"), 2), num(cell("ratio"), 3) }'
+  printf '\nFrom %s.\n' "$(made_by unknown_cameras.csv)"
+}
+
 # --- the studies of thesis chapter 4 ---
 
 # by PARAMETER COLUMN FORMAT: prints a column of parameters.csv for the rows that vary PARAMETER.

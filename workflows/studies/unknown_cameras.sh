@@ -2,7 +2,7 @@
 # Measures how much accuracy is lost without a calibration. Each draw renders a short clip through a
 # random lens and runs automatic_reconstructor with the true calibration and without one.
 # usage: workflows/studies/unknown_cameras.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
-#        (default: 24 draws, 4 for --quick, seed 1, workspace/studies)
+#        (default: 9 draws, 4 for --quick, seed 1, workspace/studies)
 # Writes unknown_cameras.csv with one row per draw: the error of the focal length and its sigma, and
 # the errors of both shapes against the truth.
 set -euo pipefail
@@ -11,8 +11,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 read_draw_arguments "$@"
 begin_study unknown_cameras "${rest[@]}"
-if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 4 : 24)); fi
-num_frames=$((quick ? 16 : 30))
+if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 4 : 9)); fi
+num_frames=$((quick ? 16 : 20))
 
 # write_lens FILE LENS WIDTH FOCAL CX CY D1 D2 D3 D4: writes a calibration file.
 write_lens() {
@@ -50,7 +50,7 @@ for draw in "${draws[@]:1}"; do
   write_lens "$runs/$name/lens.yml" "$lens" "$width" "$focal" "$cx" "$cy" "$d1" "$d2" "$d3" "$d4"
   read -ra more <<<"$options"
   make_clip "unknown_camera_$number" --scene "$scene" --width "$width" --lens \
-    "$runs/$name/lens.yml" --camera action --num_frames "$num_frames" --fps 4.5 "${more[@]}"
+    "$runs/$name/lens.yml" --camera action --num_frames "$num_frames" --fps 3 "${more[@]}"
   clip="$clips/unknown_camera_$number"
   run_job "$name/calibrated" "$clip" --camera_path "$clip/camera.yml"
   run_job "$name/unknown" "$clip"

@@ -35,7 +35,7 @@ fail() {
 
 # The commands that write the results into the work folder.
 declare -A command_of
-for study in accuracy board_motions found_cameras freeform marker_design parameters repeatability rigid_objects rolling_shutter sample_project shooting surface; do
+for study in accuracy board_motions found_cameras freeform marker_design parameters repeatability rigid_objects rolling_shutter sample_project shooting surface unknown_cameras; do
   command_of[$study.csv]="workflows/studies/$study.sh"
 done
 command_of[sample_project.txt]=workflows/studies/sample_project.sh
