@@ -1,6 +1,8 @@
 #include "reconstruct/adjust/found_cameras.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -29,6 +31,27 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
     }
   }
   return cameras;
+}
+
+void WidenToOpenCV(const MarkerSolution& solution, std::map<CameraId, EstimatedCamera>* cameras) {
+  const auto has_fewer_parameters = [](const auto& entry) {
+    return entry.second.model == CameraModel::kSimpleRadial ||
+           entry.second.model == CameraModel::kRadial;
+  };
+  const auto& chosen = solution.model.cameras;
+  if (!std::all_of(chosen.begin(), chosen.end(), has_fewer_parameters)) return;
+  std::optional<MarkerSolution> full = RefinedAs(CameraModel::kOpenCV, solution);
+  if (!full) return;
+  full->weights.corner_factor = solution.weights.corner_factor;
+  for (const auto& [camera_id, estimate] : CamerasOf(full->model, *Linearize(*full))) {
+    const auto found = cameras->find(camera_id);
+    if (found == cameras->end()) continue;
+    // OPENCV has a second focal length before the principal point.
+    std::vector<double>& sigmas = found->second.sigmas;
+    for (std::size_t i = 1; i < sigmas.size(); ++i) {
+      sigmas[i] = std::max(sigmas[i], estimate.sigmas[i + 1]);
+    }
+  }
 }
 
 void WarnOfFoldedCameras(MarkerSolution* solution) {

@@ -261,11 +261,14 @@ void MarkerAdjuster::Finish() {
       LostScaleBars(solution_.weights.scale_bars, linearization->state);
   solution_.warnings.insert(solution_.warnings.end(), lost.begin(), lost.end());
   WarnOfSlowShutter(summary_.uncertainty, &solution_);
-  if (solution_.options.find_camera) as_recorded_ = solution_.model;
+  if (solution_.options.find_camera) {
+    as_recorded_ = solution_.model;
+    summary_.cameras = CamerasOf(solution_.model, *linearization);
+    WidenToOpenCV(solution_, &summary_.cameras);
+  }
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
                   &solution_.model);
   if (solution_.options.find_camera) {
-    summary_.cameras = CamerasOf(solution_.model, *linearization);
     for (auto& [camera_id, found] : summary_.cameras) {
       AddInset(solution_.weights.inset_as_scale, found.camera, &found.sigmas);
     }

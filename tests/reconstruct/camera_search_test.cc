@@ -116,6 +116,29 @@ TEST(CameraSearch, AStraightLensNeedsNoManyParameters) {
   EXPECT_EQ(found.camera.model, CameraModel::kSimpleRadial);
 }
 
+// A tangential distortion, which SIMPLE_RADIAL does not have, passes for a shift of the principal
+// point. The focal length hardly depends on either.
+TEST(CameraSearch, ATangentialDistortionThatIsLeftOutIsInTheSigmasOfThePrincipalPoint) {
+  const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
+  const std::vector<DatabaseImage> images = DatabaseImages(MakeScene(SceneKind::kSail, truth, 5));
+  const Layout layout = MakeScene(SceneKind::kSail, truth, 5).layout;
+  MarkerAdjustmentOptions adjustment;
+  adjustment.find_camera = true;
+  const auto sigmas_as = [&](const Camera& camera) {
+    const std::map<CameraId, Camera> cameras = {{1, camera}};
+    Model model = MakeSeedModel(RegisterFrames(images, cameras, layout, {}), images, cameras);
+    return AdjustWithMarkers(adjustment, layout, CornerErrorsOf(images), &model)
+        .cameras.at(1)
+        .sigmas;
+  };
+  const std::vector<double> few = sigmas_as(truth);
+  const std::vector<double> all =
+      sigmas_as({CameraModel::kOpenCV, 1920, 1080, {1500, 1500, 964, 537, -0.05, 0, 0, 0}});
+  EXPECT_NEAR(few[1] / all[2], 1.0, 0.1);
+  EXPECT_NEAR(few[2] / all[3], 1.0, 0.1);
+  EXPECT_LT(few[0], 1.01 * all[0]);
+}
+
 TEST(CameraSearch, AFalseClaimOfExifDoesNoHarm) {
   const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1300, 960, 540, -0.05}};
   const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 10);
