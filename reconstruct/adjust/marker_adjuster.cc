@@ -44,6 +44,27 @@ std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
   return sigmas;
 }
 
+// Without the variance factor, the correlation factor and the share of large residuals.
+AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
+                                    const MarkerLinearization& linearization) {
+  AdjustmentUncertainty uncertainty = MakeUncertainty(
+      linearization.state, solution.weights, linearization.problem, linearization.covariance);
+  if (solution.weights.scale_bars.empty()) {
+    uncertainty.print_scale_sigma =
+        std::min(solution.options.common_print_tolerance, uncertainty.relative_scale_sigma);
+  }
+  if (solution.weights.frees_rolling_shutter) {
+    uncertainty.rolling_shutter_sigma_s =
+        ShutterSigma(uncertainty.rolling_shutter_sigma_s, solution, linearization);
+  }
+  uncertainty.calibration = TestCalibration(solution.model, linearization);
+  uncertainty.calibration.shape_change_in_sigmas =
+      uncertainty.calibration.shape_change_m /
+      std::sqrt(Trace(uncertainty.points) /
+                static_cast<double>(uncertainty.points.point3D_ids.size()));
+  return uncertainty;
+}
+
 }  // namespace
 
 MarkerAdjuster::MarkerAdjuster(const MarkerAdjustmentOptions& options, const Layout& layout,
@@ -238,25 +259,10 @@ void MarkerAdjuster::Finish() {
     Minimize(1e-9, &solution_);
     linearization = Linearize(solution_);
   }
-  AdjustmentUncertainty uncertainty = MakeUncertainty(
-      linearization->state, solution_.weights, linearization->problem, linearization->covariance);
-  if (solution_.weights.scale_bars.empty()) {
-    uncertainty.print_scale_sigma =
-        std::min(solution_.options.common_print_tolerance, uncertainty.relative_scale_sigma);
-  }
-  uncertainty.variance_factor = calibration.variance_factor;
-  uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
-  uncertainty.correlation_factor = correlation_factor;
-  if (solution_.weights.frees_rolling_shutter) {
-    uncertainty.rolling_shutter_sigma_s =
-        ShutterSigma(uncertainty.rolling_shutter_sigma_s, solution_, *linearization);
-  }
-  uncertainty.calibration = TestCalibration(solution_.model, *linearization);
-  uncertainty.calibration.shape_change_in_sigmas =
-      uncertainty.calibration.shape_change_m /
-      std::sqrt(Trace(uncertainty.points) /
-                static_cast<double>(uncertainty.points.point3D_ids.size()));
-  summary_.uncertainty = std::move(uncertainty);
+  summary_.uncertainty = UncertaintyOf(solution_, *linearization);
+  summary_.uncertainty.variance_factor = calibration.variance_factor;
+  summary_.uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
+  summary_.uncertainty.correlation_factor = correlation_factor;
   const std::vector<std::string> lost =
       LostScaleBars(solution_.weights.scale_bars, linearization->state);
   solution_.warnings.insert(solution_.warnings.end(), lost.begin(), lost.end());
