@@ -46,8 +46,8 @@ std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
 std::string PrintText(const ScaleEstimate& scale) {
   if (!(scale.print_sigma > 0)) return "";
   return fmt::format(
-      "; {:.3g} % of the first is assumed for the print (common_print_tolerance), and a measured "
-      "distance replaces it",
+      "; the first contains {:.3g} % that is assumed for the print until a distance is measured "
+      "(common_print_tolerance)",
       100 * scale.print_sigma);
 }
 

@@ -76,6 +76,14 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   return result;
 }
 
+void CountAsExact(const std::string& path, UncertainShape* reference) {
+  if (!reference->covariance.IsEmpty()) return;
+  LogInfo("{}: has no sigmas, so it counts as exact", path);
+  MarkerShape exact = reference->shape;
+  for (ShapeMarker& marker : exact.markers) marker.sigma_m.fill(Eigen::Vector3d::Zero().eval());
+  reference->covariance = CovarianceFromSigmas(exact);
+}
+
 void CheckMetres(const std::string& path, const MarkerShape& shape, const Layout& layout) {
   std::vector<double> sides_m, ratios;
   for (const ShapeMarker& marker : shape.markers) {

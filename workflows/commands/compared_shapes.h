@@ -18,6 +18,10 @@ namespace velamap {
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option);
 
+// Gives a reference without any sigma, such as a truth or a design by its markers, the uncertainty
+// of exact points, so that a shape with sigmas tells which differences are significant.
+void CountAsExact(const std::string& path, UncertainShape* reference);
+
 // Throws InputError naming the file whose coordinates are millimetres instead of metres: by the
 // length of its markers, which `layout` may know.
 void CheckMetres(const std::string& path, const MarkerShape& shape, const Layout& layout);

@@ -232,6 +232,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   } else {
     *reference = ReadUncertainShape(reference_path, options.reference_uncertainty_path,
                                     "--reference_uncertainty_path");
+    CountAsExact(reference_path, &**reference);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       CheckMetres(paths[i], shapes[i].shape, reference_path, (*reference)->shape, layout);
     }

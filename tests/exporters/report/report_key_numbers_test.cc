@@ -11,6 +11,7 @@ namespace velamap {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 std::optional<KeyNumber> FindIn(const ReportInput& input, KeyNumberKind kind) {
@@ -55,6 +56,14 @@ TEST_F(ReportKeyNumbers, AreOnlyThereWhereKnown) {
   EXPECT_THAT(Find(KeyNumberKind::kPrecision).value, HasSubstr("3 mm"));
   example_.metrics.reconstruction_ratio.reset();
   EXPECT_EQ(Find(KeyNumberKind::kMarkers).status, ReportStatus::kNone);
+}
+
+TEST_F(ReportKeyNumbers, TheScaleSaysWhatIsAssumedForThePrint) {
+  example_.scale.relative_sigma = 0.0011;
+  EXPECT_THAT(Find(KeyNumberKind::kScale).meaning, Not(HasSubstr("assumed")));
+  example_.scale.print_sigma = 0.001;
+  EXPECT_THAT(Find(KeyNumberKind::kScale).meaning,
+              HasSubstr("; the first contains 0.1 % that is assumed for the print"));
 }
 
 TEST_F(ReportKeyNumbers, AMeasuredDistanceThatFailsIsRed) {

@@ -87,6 +87,18 @@ TEST_F(ShapeComparerTest, AShapeWithItself) {
                              HasSubstr("num_significant: 0\n")));
 }
 
+// Such as the truth of a rendered clip, or a design by its markers.
+TEST_F(ShapeComparerTest, AReferenceWithoutSigmasCountsAsExact) {
+  MarkerShape truth = BoatShape();
+  for (ShapeMarker& marker : truth.markers) marker.sigma_m.fill(std::nullopt);
+  WriteShape("truth", truth);
+  const ProgramRun run = Compare("truth", {"--layout_path", path("layout.yml")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("truth: has no sigmas, so it counts as exact"));
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("num_with_sigma: 36\n"), HasSubstr("num_significant: 30\n")));
+}
+
 TEST_F(ShapeComparerTest, NamedMarkers) {
   const ProgramRun run = Compare("b/shape", {"--align", "markers", "--align_markers", "11,16,53"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
