@@ -271,15 +271,13 @@ void MarkerAdjuster::Finish() {
     as_recorded_ = solution_.model;
     summary_.cameras = CamerasOf(solution_.model, *linearization);
     WidenToOpenCV(solution_, &summary_.cameras);
-  }
-  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
-                  &solution_.model);
-  if (solution_.options.find_camera) {
     for (auto& [camera_id, found] : summary_.cameras) {
       AddInset(solution_.weights.inset_as_scale, found.camera, &found.sigmas);
     }
     WarnOfFoldedCameras(&solution_);
   }
+  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
+                  &solution_.model);
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(solution_.model);
   CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px,

@@ -61,10 +61,10 @@ PointCovariance WithoutScale(const Model& model, const PointCovariance& points) 
 
 // Geometry of the cameras and points.
 struct Views {
-  double camera_extent_m = 0.0;  // largest distance between two cameras
+  std::vector<Eigen::Vector3d> camera_centers;  // in the order of the images
+  double camera_extent_m = 0.0;                 // largest distance between two cameras
   double distance_m = 0.0;       // median distance of a camera from the centroid of the points
   double parallax_rad = 0.0;     // median over the points of the largest angle between two views
-  double around_rad = 0.0;       // the same if every image saw every point
   double object_extent_m = 0.0;  // RMS distance of the points from their centroid
   bool is_flat = false;
   double max_tilt_rad = 0.0;  // largest angle between a view and the normal of a flat object
@@ -81,24 +81,30 @@ double LargestParallax(const Eigen::Vector3d& x, const std::vector<Eigen::Vector
   return parallax;
 }
 
-// Sets the angles that are medians over the points.
-void MeasureParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers,
-                     Views* views) {
+// The median over the points of the largest angle between two images that see a point.
+double MedianParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers) {
   std::map<ImageId, std::size_t> image_idxs;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     image_idxs[model.images[i].image_id] = i;
   }
-  std::vector<double> seen_rad, around_rad;
+  std::vector<double> parallaxes;
   for (const auto& [point3D_id, point] : model.points3D) {
     std::vector<Eigen::Vector3d> seeing;
     for (const TrackElement& element : point.track) {
       seeing.push_back(camera_centers[image_idxs.at(element.image_id)]);
     }
-    seen_rad.push_back(LargestParallax(point.x_in_world, seeing));
-    around_rad.push_back(LargestParallax(point.x_in_world, camera_centers));
+    parallaxes.push_back(LargestParallax(point.x_in_world, seeing));
   }
-  views->parallax_rad = Median(std::move(seen_rad));
-  views->around_rad = Median(std::move(around_rad));
+  return Median(std::move(parallaxes));
+}
+
+// The same if every image saw every point.
+double MedianParallaxOfAll(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers) {
+  std::vector<double> parallaxes;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    parallaxes.push_back(LargestParallax(point.x_in_world, camera_centers));
+  }
+  return Median(std::move(parallaxes));
 }
 
 Views DescribeViews(const Model& model) {
@@ -124,7 +130,8 @@ Views DescribeViews(const Model& model) {
     }
   }
   views.distance_m = Median(std::move(distances_m));
-  MeasureParallax(model, centers, &views);
+  views.parallax_rad = MedianParallax(model, centers);
+  views.camera_centers = std::move(centers);
   return views;
 }
 
@@ -132,7 +139,7 @@ struct Explanation {
   std::string cause, remedy;
 };
 
-Explanation Explain(const Views& views) {
+Explanation Explain(const Model& model, const Views& views) {
   constexpr double kOnePlace = 0.02;
   constexpr double kHeadOn = 20.0 * kRadPerDeg;
   const std::string move = "take images from places more than 30 degrees apart";
@@ -152,10 +159,11 @@ Explanation Explain(const Views& views) {
   const std::string within =
       fmt::format("half of the points are seen within less than {:.1f} degrees",
                   kDegPerRad * views.parallax_rad);
-  if (views.around_rad > kMaxWeakParallax) {  // the camera moved enough
+  const double around_rad = MedianParallaxOfAll(model, views.camera_centers);
+  if (around_rad > kMaxWeakParallax) {  // the camera moved enough
     return {fmt::format("{}, although the camera moved by {:.0f} degrees around them: most images "
                         "do not show their markers, or not clearly enough",
-                        within, kDegPerRad * views.around_rad),
+                        within, kDegPerRad * around_rad),
             "keep all markers in the picture and make them larger or sharper in it (go closer, "
             "shorten the shutter, avoid glare)"};
   }
@@ -172,7 +180,7 @@ std::string FindWeakGeometry(const Model& model, const PointCovariance& points) 
   if (ellipsoid.elongation < kMaxElongation) return {};
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
-  const Explanation explanation = Explain(views);
+  const Explanation explanation = Explain(model, views);
   const std::string text = fmt::format(
       "{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: {}", explanation.cause,
       kTherefore, 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m, explanation.remedy);
