@@ -91,11 +91,12 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   priors.side_mm = side_mm;
   priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.7);
   priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2, 0.05, 0.4;
-  // A halo of less than 2 px is part of the blur. S is below zero where a camera lifts shadows and
-  // holds back lights, as phones do.
+  // The largest gammas stand for the logarithms of flat profiles and HDR video, which are the limit
+  // of a power. A halo of less than 2 px is part of the blur. S is below zero where a camera lifts
+  // shadows and holds back lights, as phones do.
   priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift, -0.1,
       std::log(2.0);
-  priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift, 0.15,
+  priors.max << std::log(8.0), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift, 0.15,
       std::log(5.0);
   return priors;
 }

@@ -9,10 +9,11 @@
 //
 // A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
-// per cent; the sine is the S-shaped contrast that many cameras add. A camera that sharpens light
-// instead of grey values needs no model of its own: another curve and amount put its edges where
-// they are (test SharpenedLightDoesNotMoveSides). What a lens scatters over tens of pixels changes
-// levels, not edges. Light and grey values run from 0 to 255.
+// per cent, and with a large gamma the logarithms of flat profiles and HDR video; the sine is the
+// S-shaped contrast that many cameras add. A camera that sharpens light instead of grey values
+// needs no model of its own: another curve and amount put its edges where they are (test
+// SharpenedLightDoesNotMoveSides). What a lens scatters over tens of pixels changes levels, not
+// edges. Light and grey values run from 0 to 255.
 
 #pragma once
 

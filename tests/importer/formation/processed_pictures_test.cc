@@ -96,8 +96,9 @@ TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
   EXPECT_LT(sum_px, 0.4 * sum_as_ink_px);
 }
 
-// Curves of HDR video and of film-like rendering leave the contrast of dark and light so small that
-// no power within the limits has their shape.
+// Curves of HDR video, of film-like rendering and of the flat profiles of action cameras are nearly
+// logarithms, which are the limit of a power. Small cells show no edge shift, so there the power
+// alone has to describe them.
 TEST(FormationEstimation, CurvesOfHdrVideoAndFilmDoNotMoveSides) {
   const auto hybrid_log_gamma = [](double light) {  // ITU-R BT.2100, paper at a third of its range
     const double x = 0.35 * light;
@@ -108,23 +109,26 @@ TEST(FormationEstimation, CurvesOfHdrVideoAndFilmDoNotMoveSides) {
     const double stops = std::log2(std::max(light, 1e-4) / 0.18);
     return 1 / (1 + std::exp(-9.5 * ((stops + 10) / 16.5 - 0.606)));
   };
+  const auto flat = [](double light) { return std::log(1 + 112 * light) / std::log(113.0); };
   std::mt19937 random(TestSeed());
-  for (double (*encode)(double) : {+hybrid_log_gamma, +film}) {
-    MarkerGridOptions scene = DrawScene(&random);
-    scene.side_px = 36;
-    scene.rendering.camera = {};
-    MarkerGrid grid = MakeMarkerGrid(scene);
-    cv::Mat curve(1, 256, CV_8U);
-    for (int i = 0; i < 256; ++i) {
-      curve.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(255 * encode(i / 255.0));
+  for (const double side_px : {36.0, 14.0}) {
+    for (double (*encode)(double) : {+hybrid_log_gamma, +film, +flat}) {
+      MarkerGridOptions scene = DrawScene(&random);
+      scene.side_px = side_px;
+      scene.rendering.camera = {};
+      MarkerGrid grid = MakeMarkerGrid(scene);
+      cv::Mat curve(1, 256, CV_8U);
+      for (int i = 0; i < 256; ++i) {
+        curve.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(255 * encode(i / 255.0));
+      }
+      cv::LUT(grid.image, curve, grid.image);
+      const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+      const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
+      EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px);  // two corners a side
+      EXPECT_LT(std::abs(bias_px), 0.02);
+      EXPECT_LT(estimate.inset_sigma_px, 0.02);
+      RecordProperty("bias_px", std::to_string(bias_px));
     }
-    cv::LUT(grid.image, curve, grid.image);
-    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
-    const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
-    EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px);  // two corners a side
-    EXPECT_LT(std::abs(bias_px), 0.02);
-    EXPECT_LT(estimate.inset_sigma_px, 0.04);
-    RecordProperty("bias_px", std::to_string(bias_px));
   }
 }
 
