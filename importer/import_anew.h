@@ -17,8 +17,8 @@ namespace velamap {
 // replacement: CompleteReplacement(). The lock of the database has to be held.
 class ImportAnew {
  public:
-  // Throws InputError if the database is not one of velamap's, or if a picture of the user stands
-  // in the place of a frame.
+  // Throws InputError if the database is not one of velamap's, or if a frame would replace a
+  // picture of the user's.
   explicit ImportAnew(const MarkerImporterOptions& options);
   ~ImportAnew();  // removes the new import, unless it has replaced the earlier one
   ImportAnew(const ImportAnew&) = delete;

@@ -40,7 +40,8 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
 void CheckPixelAspect(const MarkerImporterOptions& options);
 
 // Throws InputError if the calibration is for another size than the first frame that can be read,
-// as the import of each frame does: before the estimate of camera and print, which takes long.
+// as the import of each frame does. To be called before the estimate of camera and print, which
+// takes a long time.
 void CheckCalibrationSize(const MarkerImporterOptions& options);
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.

@@ -2,8 +2,8 @@
 // MergeDatabases() (database_merger.h) makes the same database from them, row for row, as a single
 // import would, for these reasons:
 //
-//   tracking   starts again with every group of frames (track/marker_tracking.h), and a part is a
-//              number of whole groups
+//   tracking   starts again with every group of frames (track/marker_tracking.h), and a part
+//              consists of whole groups
 //   formation  every part estimates how camera and print change edges from the beginning of the
 //              whole video
 //   the rest   rotations that other frames decide, and matches, need all frames and are left to the

@@ -21,7 +21,7 @@ struct EstimatedCamera {
 double FocalSigma_percent(const EstimatedCamera& found);
 inline constexpr double kGoodFocalSigma_percent = 1.0;
 
-// Whether the parameter was not estimated, as the last ones of a model that did not need them.
+// Whether the parameter was held at zero and not estimated, such as k4 to k6 of FULL_OPENCV.
 bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index);
 
 // k1, k2, p1, ... of the distortion parameter at `index`.

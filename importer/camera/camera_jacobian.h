@@ -1,5 +1,5 @@
-// Derivatives of the camera models of camera_projection.h with respect to the ray, by automatic
-// differentiation, and to a point in the camera frame.
+// Derivatives of the camera models of camera_projection.h with respect to a ray (x/z, y/z), by
+// automatic differentiation, and with respect to a point in the cam frame.
 
 #pragma once
 
@@ -46,7 +46,8 @@ inline RayFunction ImageFromRayWithJacobian(CameraModel model, const double* par
       ray);
 }
 
-// The image position of a point in front of the camera, px, and its derivative by the point.
+// The image position of a point in front of the camera, px, and its derivative with respect to the
+// point.
 struct ImagePoint {
   Eigen::Vector2d value_px;
   Eigen::Matrix<double, 2, 3> by_point;

@@ -1,4 +1,4 @@
-// Cameras of pictures whose pixels were turned by quarters of a turn.
+// Cameras of pictures whose pixels were turned by multiples of 90 degrees.
 
 #pragma once
 

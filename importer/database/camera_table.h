@@ -24,8 +24,8 @@ CameraId InsertCamera(const Camera& camera, bool is_calibrated, SQLite::Database
 bool AllCamerasAreCalibrated(SQLite::Database* database);
 
 // Skips cameras with a model that velamap does not support; velamap did not import those. Throws
-// InputError for a wrong number of parameters, a picture without pixels or a focal length that is
-// not positive.
+// InputError for a wrong number of parameters, and for an image size or a focal length that is not
+// positive.
 std::map<CameraId, Camera> ReadCameraRows(const std::string& path, SQLite::Database* database);
 
 }  // namespace velamap

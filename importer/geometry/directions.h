@@ -1,4 +1,4 @@
-// Angles between directions, and the directions that a cube can turn to.
+// Angles between directions, and the rotations of a cube onto itself.
 
 #pragma once
 

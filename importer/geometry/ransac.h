@@ -41,12 +41,13 @@ inline std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
       (static_cast<std::uint64_t>((*generator)()) * static_cast<std::uint64_t>(size)) >> 32);
 }
 
-// All hypotheses that were scored, by ascending cost: first those of `initial_models`, then those
-// of random samples. An Estimator has
-//   Model, Hypothesis    types; a hypothesis is a scored model with members `cost` and
-//   `inlier_idxs` kSampleSize          data that determine a model NumData()            of which
-//   the inliers are a part Generate(generator)  models of one random sample; none for a degenerate
-//   one Score(model)         its hypothesis
+// All hypotheses that were scored, by ascending cost; of equal ones, those of `initial_models` come
+// before those of random samples. An Estimator has
+//   Model, Hypothesis     types; a Hypothesis has the members `cost` and `inlier_idxs`
+//   kSampleSize           the number of data that determine a model
+//   NumData()             the number of data; the inliers are a subset of them
+//   Generate(generator)   the models of one random sample; none for a degenerate one
+//   Score(model)          the hypothesis of a model
 // The result depends on the seed and the input only.
 template <typename Estimator>
 std::vector<typename Estimator::Hypothesis> Ransac(

@@ -17,7 +17,8 @@ struct LitPixel {
   double by_log_light = 0.0;
 };
 
-// Means over the parts of a marker of the logarithm of the light that the model lacks.
+// For each part of a marker, the light that the model lacks there: the mean logarithm of the
+// recorded light over the modelled one.
 struct LightMap {
   struct Part {
     Eigen::Vector2d place;

@@ -23,11 +23,11 @@ class PacketDamage {
   void Mark(std::int64_t packet_idx);
 
   // Whether the frame of this packet shows what was recorded. A decoder conceals damage with other
-  // pixels, and the frames up to the next key frame copy these. Leading pictures
-  // (stored after a key frame, shown before it) may depend on frames before that key frame; no
-  // frame shown after it depends on them. All packets up to this one must have been decoded. In a
-  // stream that refreshes its pictures gradually (intra refresh), without key frames, no frame
-  // after the first damage counts as whole.
+  // pixels, and the frames up to the next key frame copy these. Leading pictures (stored after a
+  // key frame, shown before it) may depend on frames before that key frame; no frame shown after it
+  // depends on them. All packets up to this one must have been decoded. In a stream that refreshes
+  // its pictures gradually (intra refresh), without key frames, no frame after the first damage
+  // counts as whole.
   bool IsWhole(std::int64_t packet_idx) const;
 
  private:

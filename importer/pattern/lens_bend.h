@@ -30,7 +30,7 @@ struct LensBend {
 // distortion, and where the distortion cannot be inverted.
 LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px);
 
-// How far beside the corners a fit finds them that does not know the bend.
+// By how much a fit that ignores the bend misplaces the corners, px; to be subtracted from them.
 QuadCorners CornerShiftsByBend(const LensBend& bend, const QuadCorners& corners_px);
 
 }  // namespace velamap

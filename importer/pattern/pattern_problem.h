@@ -37,8 +37,8 @@ struct PatternMinimum {
   PatternEquations equations;
 };
 
-// Corners as in FitPattern(). Nothing where the marker leaves the image, has too many
-// cells or too little contrast. `formation` must outlive the problem. Sets the initial parameters.
+// Corners as in FitPattern(). Nothing where the marker leaves the image, has too many cells or too
+// little contrast. `formation` must outlive the problem. Sets the initial parameters.
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
                                                  const KnownMarker& marker,
                                                  const ImageFormation& formation,

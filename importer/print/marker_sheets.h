@@ -25,8 +25,8 @@ struct PrintReport {
   int num_sheets = 0;      // pages in true scale
   int num_drawings = 0;    // pages before these that show where the markers go
   double margin_mm = 0.0;  // of the first sticker; 0 for a board
-  // For a layout that says that the printer changed the size: what is drawn instead of
-  // marker_length.
+  // The length that is drawn instead of marker_length, if the layout says that the printer changes
+  // the size.
   std::optional<double> drawn_length_mm;
   std::vector<std::string> files;  // paths relative to the folder
 };

@@ -18,8 +18,8 @@
 
 namespace velamap {
 
-// A marker with its id after the second reading, and its corners found and refined in the order of
-// that id; nothing for the latter where no fit succeeds.
+// A marker with its id after the second reading. Both its found and its refined corners are
+// numbered for that id; there are no refined ones where no fit succeeds.
 struct ReadMarker {
   MarkerQuad quad;
   std::optional<RefinedCorners> refined;
