@@ -30,8 +30,9 @@ class MarkerAdjuster {
   // calibrates the corners' sigmas by the residuals.
   void AdjustWithLooseSizes();
 
-  // Finds out how much shorter than printed the sides of markers are that bend with a curved
-  // surface: corrects for it with bent_markers, else warns if the scale seems more certain.
+  // Finds how much shorter than printed the sides of markers are if these bend with a curved
+  // surface. With bent_markers, corrects for it; otherwise warns if the mean exceeds 1 sigma of the
+  // scale of the print.
   void MeasureChords();
 
   // Drops the size of markers that contradict the others, raises the print tolerance where the

@@ -61,9 +61,10 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
 double ShapeCorrelationFactor(const MarkerSolution& solution,
                               const MarkerLinearization& linearization);
 
-// 1 sigma of the time from the first row to the last, which varies. It is larger than that by
-// independent errors, because cloth that moves between two frames moves its markers as a rolling
-// shutter does, and because all corners of an image share errors of their velocity.
+// 1 sigma, s, of the time from the first row to the last, which must be a free parameter. It is
+// larger than `independent_sigma_s`, the sigma by independent errors of the corners, because cloth
+// that moves between two frames moves its markers as a rolling shutter does, and because all
+// corners of an image share errors of their velocity.
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization);
 

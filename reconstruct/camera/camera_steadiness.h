@@ -34,8 +34,9 @@ struct FocalStep {
   std::string first_image_after;  // its name
   CameraId camera_id = 0;         // of that image
   double before_px = 0.0, after_px = 0.0;
-  // Size of the step in sigmas of the images, or in their scatter if larger. Of groups, whose
-  // images were chosen by their focal length, in that scatter of a single image.
+  // Size of the step in its sigmas, which follow from those of the images or, if larger, from their
+  // scatter. For two groups, whose images were chosen by their focal length, in units of the
+  // scatter of a single image.
   double sigmas = 0.0;
   // Two groups: the images of the second focal length, which do not all follow the others, and
   // those of the first. The other images do not tell. Both are empty for a step in time.
@@ -63,7 +64,7 @@ struct PrincipalPointWander {
 };
 
 struct SteadinessVerdict {
-  // The one that divides the images best; nothing for few images. Two groups that alternate come
+  // The step that divides the images best; nothing for few images. Two groups that alternate come
   // first: they are at least five times as far apart as the images of a group scatter. Images whose
   // focal length is all the same, or changes slowly as with the focus, never fall into such groups
   // (2.7 for normally distributed ones, 4.1 for a sine).

@@ -22,8 +22,8 @@ inline const ColmapLimit kColmapHelpLimit = {std::chrono::minutes(2), "the limit
 constexpr const char* kNoLog = "/dev/null";
 
 // Starts `program` (a name on the PATH, or a path) and waits for it. Its output (stdout and stderr)
-// is returned and appended to `log_path`, whose folder is made; the log shows names of files
-// without their folders (importer/text/shown_text.h). No display is needed. Throws
+// is returned and appended to `log_path`, whose folder is created if it is missing; the log shows
+// names of files without their folders (importer/text/shown_text.h). No display is needed. Throws
 // ExternalToolError if the program cannot be started, exits with a status other than 0, is killed,
 // or runs beyond the limit; the message holds the command line and, unless that is kNoLog, the path
 // of the log. Throws InputError if the log cannot be written, or no folder for temporary files can

@@ -39,9 +39,9 @@ double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& pr
                                const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                                const std::vector<int>& groups, int column, int num_threads);
 
-// 1 sigma of the global parameter in `column` that errors cause which the corners of an image
-// share. `errors`: two rows for each entry of problem.corners, in sigmas of the corners; in each
-// column, 1 sigma of one error of all images, which is independent from image to image.
+// 1 sigma of the global parameter in `column` due to errors that the corners of an image share.
+// `errors`: two rows for each entry of problem.corners, in sigmas of the corners; in each column, 1
+// sigma of one error of all images, which is independent from image to image.
 double SigmaByImageErrors(const MarkerProblem& problem, const MarkerJacobian& jacobian,
                           const MarkerCovariance& covariance, int column,
                           const RowMajorMatrix& errors);

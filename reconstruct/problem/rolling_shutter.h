@@ -23,8 +23,8 @@ struct RowMotion {
 RowMotion RowMotionOf(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                       const CornerMotion& motion);
 
-// How far the corner moves from when the middle row is read to when its own row is, and the
-// derivative by rolling_shutter_s.
+// How far the corner moves between the readout of the middle row and that of its own row, px, and
+// the derivative with respect to rolling_shutter_s.
 struct RowShift {
   Eigen::Vector2d value_px, by_shutter_px_s;
 };

@@ -9,10 +9,11 @@
 
 namespace velamap {
 
-// For each frame, whether it repeats the one before: whether the markers have moved less than 3 %
-// as far as in the steps around it, or less than a fifth of what the noise of their corners moves
-// those of two pictures. `frames` are in the order of time. The result is false for a camera and an
-// object that stand still, where all steps are noise, but true for a video that stands still.
+// For each frame, whether it repeats the one before: the markers have moved by less than 3 % of the
+// steps around it, or by less than a fifth of the distance that the noise of their corners causes
+// between two pictures of one scene. `frames` are in the order of time. The result is false for a
+// camera and an object that stand still, where all steps are noise, but true for a video that
+// repeats a single picture.
 std::vector<bool> FindRepeatedFrames(const std::vector<const DatabaseImage*>& frames);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// How fast points move whose places are known at several times, with errors.
+// Velocities and accelerations of points whose places are known at several times, with errors.
 
 #pragma once
 

@@ -29,8 +29,8 @@ struct SchurSummary {
 // Where the result is not usable, all values stay as they are.
 //
 // The same input gives the same bytes if the eliminated blocks are elements of one array: Ceres
-// orders them by address. It runs on one thread, because with several its elimination sums in the
-// order in which they finish.
+// orders them by address. It runs on one thread, because with several threads its elimination adds
+// up results in the order in which they finish.
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
                                        const std::vector<double*>& kept, ceres::Problem* problem);
