@@ -72,8 +72,8 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
                                const std::optional<FrameChoice>& frame, ScaleMethod scale_by,
                                const AdjustmentUncertainty* uncertainty = nullptr);
 
-// What is doubtful about the frame, and about files that are too coarse in it: one sentence with
-// the remedy each. `writes_files`: whether the files of the shape are written.
+// Doubts about the frame, and about files whose numbers are too coarse in it, one sentence each
+// with the remedy. `writes_files`: whether the files of the shape are written.
 std::vector<std::string> FrameWarnings(const ShapeExportReport& report, const Layout& layout,
                                        bool writes_files);
 

@@ -1,4 +1,4 @@
-// A calibration as a page to look at: one HTML file without scripts or external resources.
+// The web page of a calibration: one HTML file without scripts or external resources.
 
 #pragma once
 

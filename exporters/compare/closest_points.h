@@ -27,9 +27,11 @@ std::vector<PointResidual> ComputeResiduals(const std::vector<Eigen::Vector3d>& 
 constexpr std::size_t kMinPointsOverSurface = 6;
 bool EnoughOverSurface(const std::vector<PointResidual>& residuals);
 
-// Tukey's biweights of the points over the surface, 0 for the others. Distances below
-// ZeroDistance_m() count as zero.
+// Tukey's biweights of the points over the surface, 0 for the others. Distances below `zero_m`
+// count as zero.
 std::vector<double> TukeyWeights(const std::vector<PointResidual>& residuals, double zero_m);
+
+// A distance from this mesh that is due to rounding, m.
 double ZeroDistance_m(const MeshDistance& mesh);
 
 struct SurfacePose {

@@ -39,7 +39,7 @@ struct Comparison {
 // The shape that a series is compared with. Its surfaces are the same for all shapes of the series,
 // and fitting them takes a fifth of the time of a comparison or more.
 struct SeriesReference {
-  // Not explicit: a single comparison takes the shape itself.
+  // Implicit, so that a single comparison can pass the shape itself.
   SeriesReference(UncertainShape reference)
       : uncertain(std::move(reference)), surfaces(uncertain.shape) {}
 

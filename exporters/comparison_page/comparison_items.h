@@ -1,4 +1,5 @@
-// The figures behind the first line of a comparison, and what both say alike.
+// The items of a ComparisonVerdict: the figures behind its first line. The other functions serve
+// that line as well.
 
 #pragma once
 
@@ -13,6 +14,7 @@ constexpr double kByChance = 0.0455;  // beyond two sigmas
 
 std::string Capitalized(std::string text);
 
+// Whether all markers agree to a micrometre.
 bool IsSame(const ShapeDeviation& deviation);
 
 // The significant differences of section numbers, the most significant first.

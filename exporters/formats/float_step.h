@@ -1,5 +1,5 @@
-// How much of a place a 32-bit float can tell apart: STL files hold such floats, and meshes are
-// read through them.
+// The resolution of coordinates that are stored as 32-bit floats: STL files hold such floats, and
+// meshes are read through them.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace velamap {
 
-// The program warns of a coarser step.
+// The program warns of coarser steps.
 inline constexpr double kMaxFloatStep_m = 1e-5;
 
 // Distance between neighbouring floats at the coordinate that is farthest from the origin, m, where

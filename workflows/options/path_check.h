@@ -22,9 +22,9 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 // Called once the options are set. An output that is left out goes to its default file beside
 // another output. Registers the paths, so that logs and reports leave out their folders
 // (importer/text/shown_text.h). Throws InputError for an input that is a pipe or a device, for an
-// output that is a pipe or, where a file is needed, a folder, and where CheckOutputs()
-// (importer/base/replacement.h) does: if a file of the user's is where an output that is left out,
-// a layout or a calibration goes. Throws it, too, where the folder of an output cannot be written.
+// output that is a pipe or, where a file is needed, a folder, if the folder of an output cannot be
+// written, and where CheckOutputs() (importer/base/replacement.h) does. A layout, a calibration, or
+// an output at its default path other than a log may only replace a file that velamap wrote.
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap
