@@ -47,10 +47,9 @@ OptionGroup DescribeOptions(PrintOptions* options) {
   };
   Option dictionary{
       "dictionary", &options->dictionary, "name|path",
-      fmt::format(
-          "one of OpenCV's such as DICT_4X4_50 or DICT_APRILTAG_36h11, THESIS_3X3_130, or a "
-          "dictionary file; left out: {}",
-          kDefaultDictionary)};
+      fmt::format("one of OpenCV's dictionaries, such as DICT_4X4_50 or DICT_APRILTAG_36h11, "
+                  "THESIS_3X3_130, or a dictionary file; left out: {}",
+                  kDefaultDictionary)};
   dictionary.path_use = PathUse::kReadsFile;
   return {
       "Markers",
@@ -64,11 +63,11 @@ OptionGroup DescribeOptions(PrintOptions* options) {
                FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)}),
        dictionary,
        {"border_bits", &options->border_bits, "cells", "width of the black border", FromTo(1, 8)},
-       Common({"num_markers", &options->num_markers, "count", "markers: how many",
-               FromTo(0, kMaxMarkerId + 1)}),
+       Common({"num_markers", &options->num_markers, "count",
+               "number of markers, for --arrangement markers", FromTo(0, kMaxMarkerId + 1)}),
        {"first_id", &options->first_id, "id", "id of the first marker", FromTo(0, kMaxMarkerId)},
        Common({"ids", ParsedValue{&options->ids, "", set_ids}, "ids",
-               "print only these, such as those that were lost: 3,17,20-25"})}};
+               "print only these markers, such as those that were lost: 3,17,20-25"})}};
 }
 
 void PrintOptions::Check() const {

@@ -70,7 +70,8 @@ OptionGroup DescribeOptions(RegistrationOptions* options) {
         false,
         {"central_frame"}},
        {"Registration.min_num_inliers", &options->min_num_inliers, "markers",
-        "minimum number of shared markers that have to agree", AtLeast(2)},
+        "minimum number of shared markers that have to agree for a frame to be registered",
+        AtLeast(2)},
        {"Registration.min_num_frames", &options->min_num_frames, "frames",
         "minimum number of frames that have to see a marker", AtLeast(2)}}};
   Append(DescribeOptions(&options->global), &group);

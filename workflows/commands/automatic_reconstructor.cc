@@ -76,8 +76,8 @@ CommandSyntax Declare(AutomaticReconstructorCommandOptions* options) {
   syntax.preset = &options->preset;
   syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
-                                          "1: log and report show files with their folders; 0: "
-                                          "without, so that they can be passed on"});
+                                          "1: log and report name files with their folders; 0: "
+                                          "without, so that they can be shared"});
   syntax.groups.back().options.push_back(ChoiceOption(
       "summary", &options->summary,
       {{SummaryFormat::kText, "text"}, {SummaryFormat::kJson, "json"}},

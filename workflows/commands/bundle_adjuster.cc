@@ -37,8 +37,8 @@ CommandSyntax Declare(BundleAdjusterCommandOptions* options) {
              PresetOption(&options->preset),
              Common(PathOption(
                  "database_path", PathUse::kReadsFile, &paths->database_path,
-                 "database of the model's images, for the sigma and motion of each corner "
-                 "(markers, optional)"))}},
+                 "database of the model's images, which gives the sigma and motion of each "
+                 "corner; for --backend markers or both"))}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),

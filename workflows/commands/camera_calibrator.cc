@@ -32,10 +32,11 @@ CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
         {ImagePathOption(paths),
          Required(PathOption("output_path", PathUse::kWritesOwnFile, &paths->output_path,
                              "camera file for the other commands, with sigmas")),
-         BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
-                                    "page to look at (HTML); left out: beside the camera file, "
-                                    "under its name, such as camera.html"),
-                         &paths->output_path, "*.html")}},
+         BesideIfLeftOut(
+             PathOption("report_path", PathUse::kWritesFile, &options->report_path,
+                        "web page with the result; left out: beside the camera file, with "
+                        "its name, such as camera.html"),
+             &paths->output_path, "*.html")}},
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
           "maximum number of pictures used; the most informative ones are chosen", FromTo(5, 500)},

@@ -50,9 +50,9 @@ CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
              Common(PathOption(
                  "models_path", PathUse::kAddsToFolder, &sweep->models_path,
                  "folder for the metric model, shape.csv and shape.json of each central frame, in "
-                 "a folder of the image's name; left out: none are written")),
+                 "a folder named after its image; left out: none are written")),
              {"warm_start", &sweep->warm_start, "0|1",
-              "start each adjustment at the result around the previous central frame"},
+              "start each adjustment from the result around the previous central frame"},
              BackendOption(&sweep->adjustment.backend),
              ScaleOption(&sweep->scale_by),
              PresetOption(&options->preset),

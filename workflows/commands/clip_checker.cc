@@ -38,10 +38,10 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
       {{"Input and output",
         {ImagePathOption(paths),
          Common(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                           "calibration of the camera, for the precision, which needs the "
-                           "markers' sizes, too (--layout_path, or --marker_length and "
-                           "--dictionary), or with --proposed_layout_path; left out: the camera is "
-                           "found from the pictures")),
+                           "calibration of the camera, for the precision, which also needs the "
+                           "markers' sizes (--layout_path, or --marker_length and --dictionary), "
+                           "and for --proposed_layout_path; left out: the camera is found from the "
+                           "pictures")),
          Common(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                            "PNG of the frame with most markers, with their outlines and ids; left "
                            "out: none")),
@@ -50,7 +50,7 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
              "layout file with the parts, lines and lengths that the clip shows, or the "
              "given layout corrected, which takes as long as a reconstruction; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
-          "maximum number of frames of a video to look at, at equal distances over all of it",
+          "maximum number of frames of a video to look at, spread evenly over all of it",
           FromTo(5, 1000)}}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->check.detection),
