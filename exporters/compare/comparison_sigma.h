@@ -77,8 +77,8 @@ class AlignedNoise {
                const PointCovariance& covariance);
 
   // Variance, m^2, of a place along a direction, both in the frame of the reference. `own` is the
-  // derivative of the place along the direction by its corners while the alignment is held fixed.
-  // Nothing if the covariance lacks one of the corners.
+  // derivative of the place along the direction with respect to its corners while the alignment is
+  // held fixed. Nothing if the covariance lacks one of the corners.
   std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
                                    const Eigen::Vector3d& direction,
                                    const CornerGradient& own) const;
@@ -88,8 +88,8 @@ class AlignedNoise {
   std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker) const;
 
  private:
-  // Joint covariance of several places. Column i of `by_motion` is the derivative of place i by the
-  // motion of the alignment.
+  // Joint covariance of several places. Column i of `by_motion` is the derivative of place i with
+  // respect to the motion of the alignment.
   std::optional<Eigen::MatrixXd> CovarianceOfPlaces(const std::vector<CornerGradient>& own,
                                                     const Eigen::MatrixXd& by_motion) const;
 

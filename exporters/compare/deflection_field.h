@@ -26,9 +26,9 @@ namespace velamap {
 struct Deflection {
   Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
   double distance_m = 0.0;                             // its component along the reference's normal
-  // Sigma of the distance from all that the sigmas of the markers contain, the errors that they
-  // share and the alignment too, and from the smoothing of the surfaces. Nothing where the markers
-  // have none.
+  // Sigma of the distance: from everything that the sigmas of the markers include (also the errors
+  // that they share), from the alignment, and from the smoothing of the surfaces. Nothing where the
+  // markers have none.
   std::optional<double> sigma_m;
 
   bool IsSignificant() const {

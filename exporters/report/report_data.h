@@ -24,7 +24,7 @@
 //   rigs                     rows of the table rigs (sail_metrics.h)
 //   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
 //                            triangles
-//   surface_notes            what there is to say about them, and why a part has none
+//   surface_notes            notes on the surfaces, and why a part has none
 
 #pragma once
 

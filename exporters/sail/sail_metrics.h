@@ -1,4 +1,4 @@
-// The numbers of a sail for tables: their keys and units stand here once, for the files of
+// The numbers of a sail for tables: their keys and units are declared here once, for the files of
 // sections, the metrics and the report. exporters/formats/README.md explains the keys.
 
 #pragma once

@@ -54,7 +54,7 @@ void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int
                 EdgeSamples* samples);
 
 // The prior of the fit of one side. It holds the bend small, because a lens or curved cloth bends a
-// side by some thousandths of its length, and on a short side noise would pass for a bend.
+// side by a few thousandths of its length, and on a short side noise would be mistaken for a bend.
 EdgePrior MakeEdgePrior(const SideModel& model);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// What the steps of a marker-aware bundle adjustment hand on to each other, and the minimization
+// What the steps of a marker-aware bundle adjustment pass on to each other, and the minimization
 // that they share.
 
 #pragma once

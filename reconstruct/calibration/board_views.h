@@ -54,8 +54,8 @@ std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& imag
                                           double unknown_sigma_px);
 
 // Leaves out views that repeat the one before: in which no corner is further than `tolerance_px`
-// from its place there. The sharpest of them stays. Many copies of one picture, as where a video
-// stands still, would make its errors seem to be those of all others.
+// from its place there. The sharpest of them stays. Many copies of one picture, as from a camera
+// that stands still, would let its errors pass for those of many pictures.
 std::vector<BoardView> WithoutRepeatedViews(const std::vector<BoardView>& views,
                                             double tolerance_px);
 

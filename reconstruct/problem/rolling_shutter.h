@@ -14,7 +14,8 @@ namespace velamap {
 // A corner while the rows of its frame are read.
 struct RowMotion {
   double row = 0.0;  // of the corner: -0.5 for the first row of the frame, 0.5 for the last
-  Eigen::Vector2d row_by_px = Eigen::Vector2d::Zero();  // derivative of `row` by the image point
+  // Derivative of `row` with respect to the image point.
+  Eigen::Vector2d row_by_px = Eigen::Vector2d::Zero();
   CornerMotion motion;
 };
 

@@ -11,7 +11,7 @@
 
 namespace velamap {
 
-// Derivatives of a corner's place by the time of the frame.
+// Derivatives of a corner's place with respect to time, at the time of the frame.
 struct CornerMotion {
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d acceleration_px_s2 = Eigen::Vector2d::Zero();

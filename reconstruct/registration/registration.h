@@ -17,7 +17,7 @@ namespace velamap {
 // The beginning of RegisteredFrame::reason for a frame that would add little to the registered
 // ones.
 inline constexpr char kNotChosen[] = "not chosen: ";
-// The whole reason for one of them that was registered first.
+// The whole reason for such a frame that had been registered.
 inline constexpr char kAddsLittle[] =
     "not chosen: adds less to the precision than the chosen frames";
 

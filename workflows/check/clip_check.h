@@ -18,7 +18,7 @@ namespace velamap {
 
 struct ClipCheckOptions {
   std::string image_path;  // folder of images, or a video file
-  // With it, a reconstruction finds the precision; nothing: the dictionary is found by trying.
+  // If set, a reconstruction finds the precision; otherwise the dictionary is found by trial.
   std::optional<Layout> layout;
   std::optional<Camera> camera;  // nothing: it is found from the markers if there is a layout
   std::string camera_path;       // for messages only

@@ -55,7 +55,7 @@ struct ClipFacts {
 
   std::string dictionary;
   bool is_inverted = false;
-  // Markers found with the dictionary, if it was found by trying, and with the next best one.
+  // Markers found with the dictionary, if it was found by trial, and with the next best one.
   std::optional<int> num_markers_found, num_markers_of_second;
   std::string second_dictionary;
 

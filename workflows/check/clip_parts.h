@@ -25,7 +25,7 @@ struct FrameTimes {
 // frames between them do not end it. It is good if the camera moves around the object far enough to
 // determine depth, which only `precision` (may be null) knows, and if two of its frames or more
 // show three quarters of the markers, of each part of the layout, that the clip shows at all. The
-// frames between these parts are poor parts. In the order of time.
+// frames between these parts are poor parts. Returns all parts in the order of time.
 std::vector<ClipPart> FindClipParts(const std::vector<DatabaseImage>& images,
                                     const FrameTimes& times, const Layout& layout,
                                     const ClipPrecision* precision);

@@ -17,9 +17,11 @@ struct ComparedLine {
   MarkerLine* line = nullptr;
   LayoutPart* part = nullptr;
   bool is_vertical = false;
-  Ids given;                 // its markers as the layout has them
-  Ids row;                   // as they stand, the way the line runs; empty: not found in the clip
-  Ids replaced;              // crossings with other lines, where other markers of these stand
+  Ids given;  // its markers as the layout has them
+  Ids row;    // as they stand in the clip, in the direction of the line; empty: not found there
+  // Markers of `given` that are also on a crossing line, where the clip shows another marker of
+  // that line.
+  Ids replaced;
   bool is_reversed = false;  // the row runs from left to right or up, and the line does not
   // The line runs opposite to most lines of its kind (horizontal or vertical) and part.
   bool runs_against_others = false;
