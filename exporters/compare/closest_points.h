@@ -20,6 +20,8 @@ struct PointResidual {
   bool is_over_surface = false;
 };
 
+// The distances of the points (m) from the mesh after `pose`, mesh_from_points. For a point beside
+// the surface: its distance from the border.
 std::vector<PointResidual> ComputeResiduals(const std::vector<Eigen::Vector3d>& points,
                                             const Rigid3& pose, const MeshDistance& mesh);
 

@@ -1,5 +1,5 @@
 // Whether two shapes can be of the same object. An alignment brings any two shapes as near to each
-// other as they get, so that their distances do not tell.
+// other as they get, so their distances alone do not show this.
 
 #pragma once
 

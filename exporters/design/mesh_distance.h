@@ -17,10 +17,10 @@
 namespace velamap {
 
 // Which points beyond the border of a surface still count. Noise, and cloth that reaches beyond the
-// design's edge, put about half of the markers on luff, leech, foot and head there. The distance of
-// a point is the one along the normal at the border, as if the surface continued straight: 20 mm
-// beyond the border of a surface with a curvature of 1/m, it is 0.2 mm off. That of a marker counts
-// the bend as well (marker_distance.h).
+// design's edge, put about half of the markers on luff, leech, foot and head beyond the border. The
+// distance of a point is the one along the normal at the border, as if the surface continued
+// straight: 20 mm beyond the border of a surface with a curvature of 1/m, it is 0.2 mm off. That of
+// a marker counts the bend as well (marker_distance.h).
 struct EdgeOptions {
   double tolerance_mm = 20.0;
   double num_sigmas = 3.0;  // of the marker's position across the border, if that is farther

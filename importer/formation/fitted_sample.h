@@ -21,7 +21,7 @@ struct FormationSample {
 };
 
 struct SamplePlace {
-  cv::Point in_box;
+  cv::Point in_box;  // a pixel of problem.box, relative to its top left corner
   bool is_at_outline_corner;
 };
 

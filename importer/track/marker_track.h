@@ -30,8 +30,8 @@ struct TrackPrediction {
   double margin_px = 0.0;
 };
 
-// Predicts by the velocity; a marker without one moves like those around it. `velocities` are those
-// of all markers, each over one frame.
+// Predicts the place `num_frames` later by the velocity; a marker without one moves like those
+// around it. `velocities` are those of all markers, each over one frame.
 TrackPrediction PredictByVelocity(const MarkerTrack& track,
                                   const std::vector<PointMotion>& velocities, int num_frames);
 

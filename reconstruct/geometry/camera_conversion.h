@@ -6,7 +6,7 @@
 
 namespace velamap {
 
-// The first parameter of FULL_OPENCV's denominator, k4.
+// Index of k4, the first parameter of FULL_OPENCV's denominator.
 constexpr int kBeginOfDenominator = 9;
 
 // The camera of this `model` whose image positions are nearest to those of `camera` over the image

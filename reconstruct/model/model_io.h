@@ -29,6 +29,8 @@ Model ReadModel(const std::string& path);
 void WriteModel(const Model& model, const std::string& path, ModelFormat format,
                 const std::function<void(const std::string& folder)>& write_more = {});
 
+// The single files of a folder. The readers add to `model` and throw InputError that begins with
+// `name`.
 void ReadCamerasText(std::istream& in, const std::string& name, Model* model);
 void ReadImagesText(std::istream& in, const std::string& name, Model* model);
 void ReadPoints3DText(std::istream& in, const std::string& name, Model* model);
