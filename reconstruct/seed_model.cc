@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "importer/text/csv.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
@@ -98,7 +99,7 @@ void WriteRegistrationCsv(const Registration& registration, std::ostream& out) {
       if (i < frame.outlier_reasons.size()) outliers += ": " + frame.outlier_reasons[i];
     }
     csv.WriteRecord(frame.image_name, frame.cam_from_shape.has_value(), frame.marker_ids.size(),
-                    frame.outlier_ids.size(), 1e3 * frame.rms_error_m, frame.reason, outliers);
+                    frame.outlier_ids.size(), kMmPerM * frame.rms_error_m, frame.reason, outliers);
   }
 }
 

@@ -25,8 +25,9 @@ struct PointResidual {
 std::vector<PointResidual> ComputeResiduals(const std::vector<Eigen::Vector3d>& points,
                                             const Rigid3& pose, const MeshDistance& mesh);
 
+inline constexpr std::size_t kMinPointsOverSurface = 6;
+
 // Whether at least `kMinPointsOverSurface` points lie over the surface.
-constexpr std::size_t kMinPointsOverSurface = 6;
 bool EnoughOverSurface(const std::vector<PointResidual>& residuals);
 
 // Tukey's biweights of the points over the surface, 0 for the others. Distances below `zero_m`

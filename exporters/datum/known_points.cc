@@ -10,6 +10,7 @@
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/known_distances.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -135,9 +136,8 @@ bool AreMirrored(const DatumPoints& points, const PointSet& datum,
 // is no such difference.
 std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
   const std::optional<double> growth = MedianGrowth(points, datum);
-  constexpr double kMillimetres = 1e3;
   if (!growth || std::abs(*growth - 1) <= kMaxGrowth) return "";
-  if (std::abs(*growth / kMillimetres - 1) <= kMaxGrowth) {
+  if (std::abs(*growth / kMmPerM - 1) <= kMaxGrowth) {
     return "they are 1000 times as far apart as in the shape: give metres, not millimetres";
   }
   return fmt::format(

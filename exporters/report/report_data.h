@@ -101,8 +101,8 @@ struct ReportInput {
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};
-  std::vector<ReportLeftOut> markers_left_out =
-      {};  // other missing markers of the layout are added
+  // Other missing markers of the layout are added.
+  std::vector<ReportLeftOut> markers_left_out = {};
   // The given options and the versions of the libraries, for repeating the run.
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};

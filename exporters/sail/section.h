@@ -112,8 +112,8 @@ struct SectionReport {
 };
 
 struct SectionOptions {
-  std::vector<double>
-      heights_m;          // of additional sections, along up from the frame's origin; finite
+  // Of additional sections, along up from the frame's origin; finite.
+  std::vector<double> heights_m;
   int min_markers = 4;    // whole markers that a line needs
   std::string part = {};  // the only part of the layout to cut; empty for all
 

@@ -26,6 +26,34 @@ double Girth(const SpaceCurve& curve) {
   return length_m;
 }
 
+// Angle from a to b about up, -180..180.
+double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a,
+                     const Eigen::Vector3d& b) {
+  const Eigen::Vector3d flat_a = a - up * up.dot(a), flat_b = b - up * up.dot(b);
+  return kDegPerRad * std::atan2(up.dot(flat_a.cross(flat_b)), flat_a.dot(flat_b));
+}
+
+SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes) {
+  const ProfileAxes profile = ProfileAxesOf(curve, axes);
+  const CurveJet first = EvaluateCurveJet(curve, 0.0);
+  const CurveJet last = EvaluateCurveJet(curve, 1.0);
+  const Eigen::Vector3d deepest =
+      EvaluateCurve(curve, FarthestParameter(curve, profile.depth)) - first.x;
+  const auto slope_deg = [&](const Eigen::Vector3d& tangent) {
+    return kDegPerRad * std::atan2(profile.depth.dot(tangent), profile.chord.dot(tangent));
+  };
+  SectionNumbers numbers;
+  numbers[kChord] = (last.x - first.x).norm();
+  numbers[kCamber] = profile.depth.dot(deepest) / numbers[kChord];
+  numbers[kDraftPosition] = profile.chord.dot(deepest) / numbers[kChord];
+  numbers[kEntryAngle] = slope_deg(first.x_t);
+  numbers[kExitAngle] = -slope_deg(last.x_t);
+  numbers[kAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, profile.chord);
+  numbers[kLeechAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, last.x_t);
+  numbers[kGirth] = Girth(curve);
+  return numbers;
+}
+
 }  // namespace
 
 // The best of a grid, refined to the zero of the derivative.
@@ -86,36 +114,9 @@ Eigen::MatrixXd Differentiate(const MarkerCenters& centers, const std::vector<in
   return gradient;
 }
 
-double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a,
-                     const Eigen::Vector3d& b) {
-  const Eigen::Vector3d flat_a = a - up * up.dot(a), flat_b = b - up * up.dot(b);
-  return kDegPerRad * std::atan2(up.dot(flat_a.cross(flat_b)), flat_a.dot(flat_b));
-}
-
 ProfileAxes ProfileAxesOf(const SpaceCurve& curve, const SectionAxes& axes) {
   const Eigen::Vector3d chord = ChordOf(curve);
   return {chord.normalized(), axes.leeward * axes.up.cross(chord).normalized()};
-}
-
-SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes) {
-  const ProfileAxes profile = ProfileAxesOf(curve, axes);
-  const CurveJet first = EvaluateCurveJet(curve, 0.0);
-  const CurveJet last = EvaluateCurveJet(curve, 1.0);
-  const Eigen::Vector3d deepest =
-      EvaluateCurve(curve, FarthestParameter(curve, profile.depth)) - first.x;
-  const auto slope_deg = [&](const Eigen::Vector3d& tangent) {
-    return kDegPerRad * std::atan2(profile.depth.dot(tangent), profile.chord.dot(tangent));
-  };
-  SectionNumbers numbers;
-  numbers[kChord] = (last.x - first.x).norm();
-  numbers[kCamber] = profile.depth.dot(deepest) / numbers[kChord];
-  numbers[kDraftPosition] = profile.chord.dot(deepest) / numbers[kChord];
-  numbers[kEntryAngle] = slope_deg(first.x_t);
-  numbers[kExitAngle] = -slope_deg(last.x_t);
-  numbers[kAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, profile.chord);
-  numbers[kLeechAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, last.x_t);
-  numbers[kGirth] = Girth(curve);
-  return numbers;
 }
 
 double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes) {

@@ -40,13 +40,8 @@ struct ProfileAxes {
 };
 ProfileAxes ProfileAxesOf(const SpaceCurve& curve, const SectionAxes& axes);
 
-SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes);
-
 // Signed mean depth, m; its sign tells to which side the curve bulges.
 double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes);
-
-// Angle from a to b about up, -180..180.
-double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // Parameter of the point that is farthest from the first one along the direction, on either side.
 double FarthestParameter(const SpaceCurve& curve, const Eigen::Vector3d& direction);

@@ -176,19 +176,9 @@ Eigen::Vector3d PointAtU(const SurfaceRow& row, double u) {
   return row.points[k - 1] + part * (row.points[k] - row.points[k - 1]);
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3d> PresentPoints(const SurfaceLine& line) { return Present(line).points; }
-
-std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
-  std::vector<double> lengths = {0.0};
-  for (std::size_t k = 1; k < points.size(); ++k) {
-    lengths.push_back(lengths.back() + (points[k] - points[k - 1]).norm());
-  }
-  return lengths;
-}
-
-std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& points) {
+// The smooth curve through the points as a polyline with short steps. It goes on straight beyond
+// them by their mean distance.
+Polyline SmoothEdge(const Polyline& points) {
   constexpr int kEdgeLineDegree = 3, kStepsPerPoint = 8;
   if (points.size() < 2) return points;
   const auto n = static_cast<Eigen::Index>(points.size());
@@ -212,6 +202,18 @@ std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& poin
   smooth.insert(smooth.begin(), go_on(smooth[0], smooth[1]));
   smooth.push_back(go_on(smooth.back(), smooth[smooth.size() - 2]));
   return smooth;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> PresentPoints(const SurfaceLine& line) { return Present(line).points; }
+
+std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> lengths = {0.0};
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    lengths.push_back(lengths.back() + (points[k] - points[k - 1]).norm());
+  }
+  return lengths;
 }
 
 std::vector<Eigen::Vector3d> SomePoints(const std::vector<Eigen::Vector3d>& points) {

@@ -35,10 +35,6 @@ double MeanLength(const std::vector<SurfaceLine>& lines);
 // The points of an edge, or some of them where they are many, each place once.
 std::vector<Eigen::Vector3d> SomePoints(const std::vector<Eigen::Vector3d>& points);
 
-// The smooth curve through such points as a polyline with short steps. It goes on straight beyond
-// them by their mean distance.
-std::vector<Eigen::Vector3d> SmoothEdge(const std::vector<Eigen::Vector3d>& points);
-
 // u is the chord length from the luff over the length of the whole line. A missing marker at the
 // end of a line counts with the mean spacing of the line, so that the edge of the surface keeps its
 // place. On a given luff or leech, each line gets a point where it meets the smooth curve through

@@ -94,7 +94,6 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
       MakePatternProblem(sample.gray, sample.corners_px, sample.marker, formation, &fitted.minimum);
   if (!problem || !FitPatternInPasses(&*problem, &fitted.minimum)) return std::nullopt;
   fitted.problem = std::move(*problem);
-  fitted.patch_box = cv::Rect(fitted.problem.patch.origin_px, fitted.problem.patch.values.size());
   const PatternPicture picture(fitted.problem.model, fitted.minimum.parameters);
   const Eigen::Vector2d& center = fitted.problem.model.center_px;
   for (int y = 0; y < fitted.problem.box.height; ++y) {
@@ -117,7 +116,8 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
   constexpr double kTolerancePx = 0.003;
   constexpr double kDiverged = 3.0;  // times the residuals before
   PatternProblem& problem = sample->problem;
-  SetPatch(CutPatch(sample->gray, sample->patch_box, formation), &problem);
+  const cv::Rect patch_box(problem.patch.origin_px, problem.patch.values.size());
+  SetPatch(CutPatch(sample->gray, patch_box, formation), &problem);
   SetFormation(formation, &problem);
   SetQuietZonePrior(formation.parameters(), &problem);
   for (const int index : {P::kDark, P::kLight}) {

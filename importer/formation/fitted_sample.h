@@ -28,7 +28,6 @@ struct SamplePlace {
 // A sample with its fit. Refers to the image formation that it was fitted with.
 struct FittedSample {
   cv::Mat gray;
-  cv::Rect patch_box;
   PatternProblem problem;
   PatternMinimum minimum;
   std::vector<SamplePlace> places;  // of the pixels near edges

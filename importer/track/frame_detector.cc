@@ -14,6 +14,7 @@
 #include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
+#include "importer/geometry/units.h"
 #include "importer/refine/marker_detector.h"
 #include "importer/track/line_expectation.h"
 #include "importer/track/prior_shape_expectation.h"
@@ -90,7 +91,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   for (int id = 0; id < NumMarkers(detector.dictionary); ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
-    detector.sides_mm.push_back(1e3 * MarkerLength(layout, id));
+    detector.sides_mm.push_back(kMmPerM * MarkerLength(layout, id));
   }
   CheckLayoutIds(layout, detector.dictionary);
   detector.symmetries = FindCodeSymmetries(detector.dictionary);

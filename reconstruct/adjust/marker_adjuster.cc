@@ -132,8 +132,7 @@ void MarkerAdjuster::MeasureChords() {
     solution_.warnings.push_back(fmt::format(
         "markers that bend with this surface have their corners {:.2f} % closer to each other than "
         "printed on average, {:.2f} % on marker {}, and the result would be larger by as much; if "
-        "they "
-        "bend, adjust with the option bent_markers",
+        "they bend, adjust with the option bent_markers",
         100 * chords.mean_shortening, 100 * chords.largest_shortening, chords.marker_id));
   }
 }

@@ -1,4 +1,5 @@
 #include "reconstruct/adjust/scale_bar_verdict.h"
+#include "importer/geometry/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,8 @@ std::string ComparedWith(const char* others, const ScaleBar& bar, const Differen
   const double expected_m = length_m * std::exp(-difference.value);
   return fmt::format("{} is {:.5g} m in the layout, but {:.5g} m by {} ({:+.1f} mm, {:.0f} sigmas)",
                      NameOf(bar.distance), length_m, expected_m, others,
-                     1e3 * (length_m - expected_m), std::abs(difference.value) / difference.sigma);
+                     kMmPerM * (length_m - expected_m),
+                     std::abs(difference.value) / difference.sigma);
 }
 
 // The reason why a set of bars does not overrule the markers; empty if it does.

@@ -34,12 +34,13 @@ struct FocalEvidence {
   int num_views = 0;  // that took part
 };
 
+inline constexpr std::size_t kMaxFocalViews = 600;
+
 // The best focal length of a lens of this `model` (kSimpleRadial, straight lines stay straight, or
 // kOpenCVFisheye, equidistant), between 0.2 and 10 times the larger side of the picture. At most
 // `kMaxFocalViews` views take part, the largest as a multiple of their sigma. `num_threads` 0: one
 // per core; the result does not depend on it. Without views the result is UnknownCamera()'s focal
 // length with an infinite sigma.
-inline constexpr std::size_t kMaxFocalViews = 600;
 FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
                               std::vector<SquareView> views, int num_threads = 0);
 

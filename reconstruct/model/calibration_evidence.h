@@ -30,10 +30,11 @@ struct CalibrationEvidence {
 // how many sigmas the residuals contradict the calibration. 0 if nothing was tested.
 double SigmasAgainst(const CalibrationEvidence& evidence);
 
+inline constexpr double kMaxCalibrationSigmas = 3.0, kMaxSystematic_px = 0.02;
+
 // Whether the residuals contradict the calibration: beyond chance, and by more than the lens
 // residue that the sigma of every corner contains
 // (MarkerAdjustmentOptions::corner_sigma_floor_px).
-constexpr double kMaxCalibrationSigmas = 3.0, kMaxSystematic_px = 0.02;
 bool IsContradicted(const CalibrationEvidence& evidence);
 
 }  // namespace velamap

@@ -181,9 +181,10 @@ std::string FindWeakGeometry(const Model& model, const PointCovariance& points) 
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
   const Explanation explanation = Explain(model, views);
-  const std::string text = fmt::format(
-      "{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: {}", explanation.cause,
-      kTherefore, 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m, explanation.remedy);
+  const std::string text =
+      fmt::format("{}{}{:.2g} mm along the line of sight, but to {:.2g} mm across it: {}",
+                  explanation.cause, kTherefore, kMmPerM * ellipsoid.longest_m,
+                  kMmPerM * ellipsoid.shortest_m, explanation.remedy);
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
     throw DataError("the images leave the shape undetermined: " + text);
   }

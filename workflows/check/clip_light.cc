@@ -23,7 +23,7 @@ struct Lights {
     whites.push_back(inverted ? 255 - light.black : light.white);
     ++num_measured_of_id[marker_id];
     num_poor_of_id[marker_id] +=
-        whites.back() > kMaxWhite || whites.back() - blacks.back() < kMinContrast;
+        whites.back() > kMaxWhite || whites.back() - blacks.back() < kGoodContrast;
     blurs_px.push_back(light.least_blur_px);
     // A path of length l during the exposure adds l^2 / 12 to the variance across its edges.
     motions_px.push_back(

@@ -12,7 +12,8 @@ inline constexpr double kGoodSidePx = 20.0, kBadSidePx = 12.0;
 // hopeless.
 inline constexpr double kGoodParallax_deg = 20.0, kBadParallax_deg = 8.0;
 
-// Grey levels of a marker, 0 to 255: brighter paper loses its edges, and less contrast its cells.
-inline constexpr double kMinContrast = 60.0, kMaxWhite = 250.0;
+// Grey levels of the markers of a good clip, 0 to 255: brighter paper loses its edges, and less
+// contrast its cells.
+inline constexpr double kGoodContrast = 60.0, kMaxWhite = 250.0;
 
 }  // namespace velamap

@@ -122,7 +122,7 @@ class Judge {
     if (*facts_.white > kMaxWhite) {
       reasons_.Check("the paper is overexposed, which moves edges: reduce the exposure");
     }
-    if (*facts_.white - *facts_.black < kMinContrast) {
+    if (*facts_.white - *facts_.black < kGoodContrast) {
       reasons_.Check(
           fmt::format("black and white differ by {:.0f} of 255 grey levels: increase the "
                       "exposure, avoid glare",

@@ -120,7 +120,7 @@ void PrintLight(const ClipFacts& facts, std::ostream& out) {
   out << fmt::format(
       "grey_levels: black {:.0f}, white {:.0f} of 255 (good: white at most {:.0f}, black at least "
       "{:.0f} below it)\n",
-      *facts.black, *facts.white, kMaxWhite, kMinContrast);
+      *facts.black, *facts.white, kMaxWhite, kGoodContrast);
   out << fmt::format("blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n",
                      *facts.blur_px, *facts.motion_px);
 }

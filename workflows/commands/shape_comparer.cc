@@ -12,6 +12,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
+#include "importer/geometry/units.h"
 #include "importer/text/output_date.h"
 #include "workflows/commands/commands.h"
 #include "workflows/commands/compared_shapes.h"
@@ -271,7 +272,7 @@ void Write(const ShapeComparerCommandOptions& options, const Comparison& first,
     if (!path.empty()) WriteFileAtomically(path, writer);
   };
   std::optional<double> limit_m;
-  if (options.color_limit_mm) limit_m = *options.color_limit_mm / 1e3;
+  if (options.color_limit_mm) limit_m = *options.color_limit_mm / kMmPerM;
   write(options.csv_path, [&](std::ostream& out) { WriteMetricsCsv(report, out); });
   write(options.json_path, [&](std::ostream& out) { WriteMetricsJson(report, out); });
   write(options.paths.output_path,

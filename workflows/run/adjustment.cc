@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/log.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
@@ -76,7 +77,7 @@ void LogMarkersSummary(const MarkerAdjustmentSummary& summary) {
       "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas{}) and move "
       "the shape by {:.2f} mm ({:.1f} of its sigmas)",
       calibration.num_changes, calibration.systematic_px, SigmasAgainst(calibration), focal_change,
-      1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);
+      kMmPerM * calibration.shape_change_m, calibration.shape_change_in_sigmas);
   LogDebug("calibration: focal length explains {:.2f}, distortion {:.2f}", calibration.focal_share,
            calibration.distortion_share);
   if (uncertainty.apparent_inset_sigma_px > 0) {

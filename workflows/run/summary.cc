@@ -115,12 +115,12 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   }
   for (const SailSurface& surface : report.sail.surfaces) {
     out << fmt::format("surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
-                       surface.area_m2, 1e3 * surface.fit.distance_m.rms);
+                       surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : report.freeform.surfaces) {
     out << fmt::format("surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
                        ShownName(part.part), SizeText(part.surface),
-                       1e3 * part.surface.distance_m.rms, 1e3 * part.surface.rms_sigma_m);
+                       kMmPerM * part.surface.distance_m.rms, kMmPerM * part.surface.rms_sigma_m);
   }
   for (const std::string& note : SurfaceNotes(report)) {
     out << fmt::format("surface_note: {}\n", note);
