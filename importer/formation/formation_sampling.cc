@@ -21,9 +21,24 @@
 namespace velamap {
 namespace {
 
-constexpr double kMinSidePx = 12.0;
+// Smaller markers show too little of their cells. Those below kGoodSidePx are used where there are
+// hardly any others.
+constexpr double kMinSidePx = 9.0, kGoodSidePx = 12.0;
 constexpr int kUsualFits = 60;        // of each sample; nine inputs took 40 to 70
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
+
+// Markers with the largest value tell most.
+double PreferenceOf(const QuadCorners& corners_px) {
+  const double side_px = QuadMeanSide(corners_px);
+  return std::min(side_px / kBestSidePx, kBestSidePx / side_px);
+}
+
+template <typename Range>
+std::ptrdiff_t CountGood(const Range& markers) {
+  return std::count_if(markers.begin(), markers.end(), [](const auto& marker) {
+    return QuadMeanSide(marker.corners_px) >= kGoodSidePx;
+  });
+}
 
 // The number of samples per frame. Each small marker contributes less information and takes less
 // time, so the number follows from a total number of pixels.
@@ -42,7 +57,8 @@ SampleQuota QuotaOfFrame(int num_frames) {
 // How far a sample reaches beyond the marker.
 double SampleReachPx(double side_px) { return 0.6 * side_px + 8; }
 
-// Chooses markers of the layout, spread over the half whose size is nearest to kBestSidePx.
+// Chooses markers of the layout, spread over the half of the good ones whose size is nearest to
+// kBestSidePx.
 std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const SampleQuota& quota,
                                       std::vector<MarkerQuad> quads) {
   quads.erase(std::remove_if(quads.begin(), quads.end(),
@@ -52,12 +68,8 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
                                        detector.part_of_id.count(quad.marker_id) == 0);
                              }),
               quads.end());
-  const auto preference = [](const MarkerQuad& quad) {
-    const double side_px = QuadMeanSide(quad.corners_px);
-    return std::min(side_px / kBestSidePx, kBestSidePx / side_px);
-  };
-  std::stable_sort(quads.begin(), quads.end(), [&](const MarkerQuad& a, const MarkerQuad& b) {
-    return preference(a) > preference(b);
+  std::stable_sort(quads.begin(), quads.end(), [](const MarkerQuad& a, const MarkerQuad& b) {
+    return PreferenceOf(a.corners_px) > PreferenceOf(b.corners_px);
   });
   if (quads.empty()) return {};
   const auto size = static_cast<int>(quads.size());
@@ -65,7 +77,7 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
   const double width_px = side_px + 2 * SampleReachPx(side_px);
   const auto num_that_fit = static_cast<int>(quota.num_pixels / (width_px * width_px));
   const int num = std::min(size, std::clamp(num_that_fit, quota.num_large, quota.num_small));
-  const int num_good = std::max(num, size / 2);
+  const int num_good = std::max(num, static_cast<int>(CountGood(quads)) / 2);
   std::vector<MarkerQuad> chosen;
   for (int i = 0; i < num; ++i) {
     chosen.push_back(quads[static_cast<std::size_t>(i * num_good / num)]);
@@ -173,9 +185,19 @@ bool SampleFrames(const SampledSource& source, int num_frames, int stride, const
   return has_more;
 }
 
+// Keeps the samples that tell most.
+void LimitNumber(std::vector<FormationSample>* samples) {
+  std::stable_sort(samples->begin(), samples->end(),
+                   [](const FormationSample& a, const FormationSample& b) {
+                     return PreferenceOf(a.corners_px) > PreferenceOf(b.corners_px);
+                   });
+  const auto most = static_cast<std::size_t>(kQuota.num_small);
+  samples->erase(samples->begin() + std::min(most, samples->size()), samples->end());
+}
+
 // Samples frames at the beginning of a video. Adds later frames, farther and farther apart, while
-// too few markers are found, and continues to the end of the video if hardly any are. In a short
-// video the frames are closer together.
+// too few good markers are found, and continues to the end of the video if there are hardly any
+// markers. In a short video the frames are closer together.
 std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
   const int num_in_video = source.frames->NumFrames();  // 0: unknown
@@ -185,10 +207,12 @@ std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   bool has_more = true;
   for (int stride = first_stride; has_more; stride = std::min(2 * stride, kMaxStride)) {
     has_more = SampleFrames(source, kNumFrames, stride, QuotaOfFrame(kNumFrames), &samples);
-    const std::size_t num_enough =
-        stride == kMaxStride ? kMinFormationSamples : kQuota.num_large / 2;
-    if (samples.size() >= num_enough) break;
+    const bool is_last_resort = stride == kMaxStride;
+    const int num_enough = is_last_resort ? kMinFormationSamples : kQuota.num_large / 2;
+    if (CountGood(samples) >= num_enough) break;
+    if (is_last_resort && static_cast<int>(samples.size()) >= kQuota.num_large) break;
   }
+  if (CountGood(samples) < kQuota.num_large / 2) LimitNumber(&samples);
   return samples;
 }
 

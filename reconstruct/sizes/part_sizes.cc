@@ -47,6 +47,9 @@ std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double 
           sizes[i].block_variance + std::pow(agreement.print_tolerance, 2) / sizes[i].num_sides;
       size.own_variance += variance / (count * count);
     }
+    // Slant and background differ more between parts than within one, and so does the inset of the
+    // corners, whose sigma is the last of these errors.
+    size.own_variance += std::pow(size.by_factor[size.by_factor.size() - 1], 2);
     parts.push_back(std::move(size));
   }
   std::stable_sort(parts.begin(), parts.end(), [](const PartSize& a, const PartSize& b) {

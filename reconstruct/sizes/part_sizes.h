@@ -18,8 +18,9 @@ struct PartsVerdict {
 
 // The parts disagree if one of them differs from the weighted mean of the others by more than
 // kMaxSizeSigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the print as a
-// fraction. Parts with fewer than kMinMarkersOfPart markers do not take part. `print_tolerance` is
-// 1 sigma of a printed side, as a fraction.
+// fraction. Parts with fewer than kMinMarkersOfPart markers do not take part. The inset of the
+// corners may differ between parts by as much as it is uncertain. `print_tolerance` is 1 sigma of a
+// printed side, as a fraction.
 PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                         double print_scale_sigma);
 
