@@ -6,37 +6,56 @@
 #include <cstddef>
 
 #include "importer/geometry/units.h"
+#include "importer/lanes/float_lanes.h"
 
 namespace velamap {
 namespace {
 
-// The map as columns that are scaled by the roots of the weights.
-struct WeightedMap {
-  Eigen::MatrixXd smooth;             // orthonormal: light that is even, slopes and curves
-  Eigen::VectorXd root_weight, lack;  // what `smooth` does not explain
+constexpr int kSmooth = 6;  // light that is even, slopes and curves
 
-  explicit WeightedMap(const LightMap& map) {
-    const auto n = static_cast<Eigen::Index>(map.parts.size());
-    smooth.resize(n, 6);
-    root_weight.resize(n);
-    lack.resize(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const LightMap::Part& part = map.parts[static_cast<std::size_t>(i)];
-      const double x = part.place.x(), y = part.place.y();
-      root_weight[i] = std::sqrt(part.weight);
-      smooth.row(i) << 1, x, y, x * x, x * y, y * y;
-      smooth.row(i) *= root_weight[i];
-      lack[i] = root_weight[i] * part.lack;
-    }
-    for (Eigen::Index k = 0; k < smooth.cols(); ++k) {
-      for (Eigen::Index j = 0; j < k; ++j) {
-        smooth.col(k) -= smooth.col(j).dot(smooth.col(k)) * smooth.col(j);
-      }
-      smooth.col(k) /= std::max(smooth.col(k).norm(), 1e-9);
-    }
-    lack -= smooth * (smooth.transpose() * lack);
-  }
+// Values of the parts, in groups of lanes; what stands for no part is zero.
+struct PartGroup {
+  Floats x, y;
+  // Scaled by the root of the weight: one, an orthonormal base of the smooth light, and what it
+  // does not explain of the lack.
+  Floats root_weight, lack;
+  FloatsArray<kSmooth> smooth;
 };
+
+std::vector<PartGroup> GroupParts(const LightMap& map) {
+  const auto n = static_cast<Eigen::Index>(map.parts.size());
+  Eigen::MatrixXd smooth(n, kSmooth);
+  Eigen::VectorXd root_weight(n), lack(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const LightMap::Part& part = map.parts[static_cast<std::size_t>(i)];
+    const double x = part.place.x(), y = part.place.y();
+    root_weight[i] = std::sqrt(part.weight);
+    smooth.row(i) << 1, x, y, x * x, x * y, y * y;
+    smooth.row(i) *= root_weight[i];
+    lack[i] = root_weight[i] * part.lack;
+  }
+  for (Eigen::Index k = 0; k < smooth.cols(); ++k) {
+    for (Eigen::Index j = 0; j < k; ++j) {
+      smooth.col(k) -= smooth.col(j).dot(smooth.col(k)) * smooth.col(j);
+    }
+    smooth.col(k) /= std::max(smooth.col(k).norm(), 1e-9);
+  }
+  lack -= smooth * (smooth.transpose() * lack);
+  std::vector<PartGroup> groups((map.parts.size() + kLanes - 1) / kLanes, PartGroup{});
+  for (Eigen::Index i = 0; i < n; ++i) {
+    PartGroup& group = groups[static_cast<std::size_t>(i / kLanes)];
+    const auto lane = static_cast<int>(i % kLanes);
+    const Eigen::Vector2d& place = map.parts[static_cast<std::size_t>(i)].place;
+    group.x[lane] = static_cast<float>(place.x());
+    group.y[lane] = static_cast<float>(place.y());
+    group.root_weight[lane] = static_cast<float>(root_weight[i]);
+    group.lack[lane] = static_cast<float>(lack[i]);
+    for (int k = 0; k < kSmooth; ++k) {
+      group.smooth[k][lane] = static_cast<float>(smooth(i, k));
+    }
+  }
+  return groups;
+}
 
 }  // namespace
 
@@ -82,34 +101,48 @@ LightMap MapLight(const std::vector<LitPixel>& pixels) {
   return map;
 }
 
-FoundBand FindBand(const LightMap& map) {
+VELAMAP_CLONE_FOR_AVX2 FoundBand FindBand(const LightMap& map) {
   constexpr int kAngles = 16, kOffsets = 17;
   constexpr double kLeastOffset = -0.5, kBlur = 0.04, kMinShare = 0.02;
   constexpr double kMinDepth = -3.0, kMaxDepth = 0.8;
-  const WeightedMap weighted(map);
-  const Eigen::Index n = weighted.lack.size();
-  const auto ramp = [](double x) { return std::clamp(0.5 + x / (2.5 * kBlur), 0.0, 1.0); };
+  const std::vector<PartGroup> groups = GroupParts(map);
+  // Rises from 0 to 1 across an edge at zero.
+  const auto ramp = [](Floats x) {
+    return Min(Max(0.5f + x * static_cast<float>(1 / (2.5 * kBlur)), AllLanes(0.0)), AllLanes(1.0));
+  };
   FoundBand best;
   best.band << 0, 0, 0, std::log(kBlur), 0;
   double most = 0.0;
-  Eigen::VectorXd along(n), inside(n);
+  // How far parts are beyond the first edge, and the share of them that is.
+  struct Beyond {
+    Floats distance, share;
+  };
+  std::vector<Beyond> beyond(groups.size());
   for (int a = 0; a < kAngles; ++a) {
     const double angle = kPi * a / kAngles;
-    const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-    for (Eigen::Index i = 0; i < n; ++i) {
-      along[i] = normal.dot(map.parts[static_cast<std::size_t>(i)].place);
-    }
+    const Floats normal_x = AllLanes(std::cos(angle)), normal_y = AllLanes(std::sin(angle));
     for (int o = 0; o < kOffsets; ++o) {
       const double offset = kLeastOffset + o / (kOffsets - 1.0);
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        const Floats distance = normal_x * groups[g].x + normal_y * groups[g].y - AllLanes(offset);
+        beyond[g] = {distance, ramp(distance)};
+      }
       for (const double width : {0.06, 0.12, 0.25, 2.0}) {
-        for (Eigen::Index i = 0; i < n; ++i) {
-          inside[i] =
-              weighted.root_weight[i] * (ramp(along[i] - offset) - ramp(along[i] - offset - width));
+        Floats squares{}, by_lack_lanes{};
+        FloatsArray<kSmooth> by_smooth{};
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+          const PartGroup& group = groups[g];
+          const Floats inside =
+              group.root_weight * (beyond[g].share - ramp(beyond[g].distance - AllLanes(width)));
+          squares += inside * inside;
+          by_lack_lanes += inside * group.lack;
+          for (int k = 0; k < kSmooth; ++k) by_smooth[k] += inside * group.smooth[k];
         }
-        const double all = inside.squaredNorm();
-        const double own = all - (weighted.smooth.transpose() * inside).squaredNorm();
+        const double all = Sum(squares), by_lack = Sum(by_lack_lanes);
+        double own = all;
+        for (int k = 0; k < kSmooth; ++k) own -= std::pow(Sum(by_smooth[k]), 2);
         if (!(own > kMinShare * all)) continue;
-        const double by_lack = inside.dot(weighted.lack), explained = by_lack * by_lack / own;
+        const double explained = by_lack * by_lack / own;
         if (explained <= most) continue;
         most = explained;
         best.band << angle, offset, std::log(width), std::log(kBlur),
@@ -117,9 +150,10 @@ FoundBand FindBand(const LightMap& map) {
       }
     }
   }
-  double all = 0.0;
+  double all = 0.0, lack = 0.0;
   for (const LightMap::Part& part : map.parts) all += part.weight * part.lack * part.lack;
-  best.unexplained = (weighted.lack.squaredNorm() - most) / std::max(all, 1e-9);
+  for (const PartGroup& group : groups) lack += Sum(group.lack * group.lack);
+  best.unexplained = (lack - most) / std::max(all, 1e-9);
   return best;
 }
 
