@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -96,6 +97,18 @@ TEST(JudgeParts, APartThatIsHardlyKnownHidesNothing) {
     EXPECT_THAT(of_three.disagreement, HasSubstr("sail and the other parts disagree")) << sigma;
     EXPECT_GT(of_three.scale_sigma, 0.7 * of_two.scale_sigma) << sigma;
     EXPECT_LT(of_three.scale_sigma, 1.2 * of_two.scale_sigma) << sigma;
+  }
+}
+
+// The corners of slanted markers on dark topsides are not shifted as those on white cloth.
+TEST(JudgeParts, TheInsetOfCornersMayDifferBetweenParts) {
+  std::mt19937 random(9);
+  std::vector<MarkerSize> sizes =
+      DrawSizes({{"sail", 100, 1.003, 5e-4, 3e-4}, {"hull", 8, 1.0, 5e-4, 3e-4}}, &random);
+  for (const auto& [inset_sigma, agrees] : {std::pair{0.0, false}, {3e-4, false}, {2e-3, true}}) {
+    for (MarkerSize& size : sizes) size.by_factor[0] = inset_sigma;
+    const PartsVerdict verdict = JudgeParts(sizes, kPrintTolerance, kPrintScaleSigma);
+    EXPECT_EQ(verdict.disagreement.empty(), agrees) << inset_sigma;
   }
 }
 
