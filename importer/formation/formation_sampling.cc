@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <iterator>
 #include <memory>
@@ -27,17 +28,23 @@ constexpr double kMinSidePx = 9.0, kGoodSidePx = 12.0;
 constexpr int kUsualFits = 60;        // of each sample; nine inputs took 40 to 70
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
-// Markers with the largest value tell most.
-double PreferenceOf(const QuadCorners& corners_px) {
-  const double side_px = QuadMeanSide(corners_px);
-  return std::min(side_px / kBestSidePx, kBestSidePx / side_px);
+// Puts the markers first that tell most, those whose size is nearest to kBestSidePx. A Marker has
+// `corners_px`.
+template <typename Marker>
+void SortByPreference(std::vector<Marker>* markers) {
+  const auto preference = [](const Marker& marker) {
+    const double side_px = QuadMeanSide(marker.corners_px);
+    return std::min(side_px / kBestSidePx, kBestSidePx / side_px);
+  };
+  std::stable_sort(markers->begin(), markers->end(),
+                   [&](const Marker& a, const Marker& b) { return preference(a) > preference(b); });
 }
 
-template <typename Range>
-std::ptrdiff_t CountGood(const Range& markers) {
-  return std::count_if(markers.begin(), markers.end(), [](const auto& marker) {
-    return QuadMeanSide(marker.corners_px) >= kGoodSidePx;
-  });
+template <typename Marker>
+std::size_t CountGood(const std::vector<Marker>& markers) {
+  return static_cast<std::size_t>(std::count_if(
+      markers.begin(), markers.end(),
+      [](const Marker& marker) { return QuadMeanSide(marker.corners_px) >= kGoodSidePx; }));
 }
 
 // The number of samples per frame. Each small marker contributes less information and takes less
@@ -68,16 +75,14 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
                                        detector.part_of_id.count(quad.marker_id) == 0);
                              }),
               quads.end());
-  std::stable_sort(quads.begin(), quads.end(), [](const MarkerQuad& a, const MarkerQuad& b) {
-    return PreferenceOf(a.corners_px) > PreferenceOf(b.corners_px);
-  });
+  SortByPreference(&quads);
   if (quads.empty()) return {};
   const auto size = static_cast<int>(quads.size());
   const double side_px = QuadMeanSide(quads[quads.size() / 4].corners_px);
   const double width_px = side_px + 2 * SampleReachPx(side_px);
   const auto num_that_fit = static_cast<int>(quota.num_pixels / (width_px * width_px));
   const int num = std::min(size, std::clamp(num_that_fit, quota.num_large, quota.num_small));
-  const int num_good = std::max(num, static_cast<int>(CountGood(quads)) / 2);
+  const int num_good = std::max(num, static_cast<int>(CountGood(quads) / 2));
   std::vector<MarkerQuad> chosen;
   for (int i = 0; i < num; ++i) {
     chosen.push_back(quads[static_cast<std::size_t>(i * num_good / num)]);
@@ -185,21 +190,12 @@ bool SampleFrames(const SampledSource& source, int num_frames, int stride, const
   return has_more;
 }
 
-// Keeps the samples that tell most.
-void LimitNumber(std::vector<FormationSample>* samples) {
-  std::stable_sort(samples->begin(), samples->end(),
-                   [](const FormationSample& a, const FormationSample& b) {
-                     return PreferenceOf(a.corners_px) > PreferenceOf(b.corners_px);
-                   });
-  const auto most = static_cast<std::size_t>(kQuota.num_small);
-  samples->erase(samples->begin() + std::min(most, samples->size()), samples->end());
-}
-
 // Samples frames at the beginning of a video. Adds later frames, farther and farther apart, while
 // too few good markers are found, and continues to the end of the video if there are hardly any
 // markers. In a short video the frames are closer together.
 std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
+  constexpr std::size_t kEnough = kQuota.num_large / 2;
   const int num_in_video = source.frames->NumFrames();  // 0: unknown
   const int first_stride =
       num_in_video == 0 ? kStride : std::clamp(num_in_video / kNumFrames, 1, kStride);
@@ -208,11 +204,13 @@ std::vector<FormationSample> SampleVideo(const SampledSource& source) {
   for (int stride = first_stride; has_more; stride = std::min(2 * stride, kMaxStride)) {
     has_more = SampleFrames(source, kNumFrames, stride, QuotaOfFrame(kNumFrames), &samples);
     const bool is_last_resort = stride == kMaxStride;
-    const int num_enough = is_last_resort ? kMinFormationSamples : kQuota.num_large / 2;
-    if (CountGood(samples) >= num_enough) break;
-    if (is_last_resort && static_cast<int>(samples.size()) >= kQuota.num_large) break;
+    if (CountGood(samples) >= (is_last_resort ? kMinFormationSamples : kEnough)) break;
+    if (is_last_resort && samples.size() >= std::size_t{kQuota.num_large}) break;
   }
-  if (CountGood(samples) < kQuota.num_large / 2) LimitNumber(&samples);
+  if (CountGood(samples) < kEnough) {
+    SortByPreference(&samples);
+    samples.resize(std::min(samples.size(), std::size_t{kQuota.num_small}));
+  }
   return samples;
 }
 
