@@ -132,7 +132,7 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
                   worst->sigmas.front()),
       fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
                   "length, whose error the sigmas of the shape include; {}",
-                  kGoodFocalSigma_percent, DescribeCamera(*worst)),
+                  kGoodFocalSigma_percent, DescribeCamera(*worst, "\u00b1")),
       LowIsGood(worst_percent, kGoodFocalSigma_percent, kBad_percent),
       "the pictures hardly determine the camera: show markers tilted, everywhere in the picture "
       "and from more sides, or give a calibration"};

@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/replacement.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/text/number_text.h"
 
 namespace velamap {
 namespace {
@@ -73,20 +74,22 @@ void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin
   WriteFileAtomically(path, [&text](std::ostream& out) { out << WithSeal(text, "# ", ""); });
 }
 
-std::string DescribeCamera(const EstimatedCamera& estimate) {
+std::string DescribeCamera(const EstimatedCamera& estimate, std::string_view sign) {
   const Camera& camera = estimate.camera;
-  const std::vector<double>&values = camera.params, &sigmas = estimate.sigmas;
+  const auto text_of = [&](std::size_t i, int digits) {
+    return UncertainText(camera.params[i], estimate.sigmas[i], 1, digits, sign);
+  };
   const std::size_t center = NumFocalLengths(camera.model);
-  std::string text = fmt::format("{}, focal length {:.1f} +- {:.1f}", CameraModelName(camera.model),
-                                 values[0], sigmas[0]);
-  if (center == 2) text += fmt::format(" and {:.1f} +- {:.1f}", values[1], sigmas[1]);
-  text += fmt::format(" px, principal point ({:.1f} +- {:.1f}, {:.1f} +- {:.1f}) px",
-                      values[center], sigmas[center], values[center + 1], sigmas[center + 1]);
+  std::string text =
+      fmt::format("{}, focal length {}", CameraModelName(camera.model), text_of(0, 1));
+  if (center == 2 && text_of(1, 1) != text_of(0, 1)) text += " and " + text_of(1, 1);
+  text +=
+      fmt::format(" px, principal point ({}, {}) px", text_of(center, 1), text_of(center + 1, 1));
   const char* separator = ", distortion";
-  for (std::size_t i = center + 2; i < values.size(); ++i) {
+  for (std::size_t i = center + 2; i < camera.params.size(); ++i) {
     if (IsHeldAtZero(estimate, i)) continue;
-    text += fmt::format("{} {} {:.4f} +- {:.4f}", separator,
-                        DistortionName(camera.model, i - center - 2), values[i], sigmas[i]);
+    text += fmt::format("{} {} {}", separator, DistortionName(camera.model, i - center - 2),
+                        text_of(i, 4));
     separator = ",";
   }
   return text;

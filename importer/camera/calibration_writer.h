@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "importer/camera/camera.h"
@@ -39,7 +40,8 @@ void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin
                       const std::string& path);
 
 // `SIMPLE_RADIAL, focal length 901.3 +- 0.4 px, principal point (964.2 +- 0.5, 536.7 +- 0.6) px,
-// distortion k1 -0.2451 +- 0.0012`, without distortion parameters that were held at 0.
-std::string DescribeCamera(const EstimatedCamera& estimate);
+// distortion k1 -0.2451 +- 0.0012`, without distortion parameters that were held at 0. `sign`
+// stands between a value and its sigma.
+std::string DescribeCamera(const EstimatedCamera& estimate, std::string_view sign = "+-");
 
 }  // namespace velamap

@@ -15,7 +15,7 @@ std::string FixedText(double value, int digits) {
 
 std::string UncertainText(double value, const std::optional<double>& sigma, double factor,
                           int digits, std::string_view sign) {
-  constexpr int kMaxDigits = 4;
+  constexpr int kMaxDigits = 6;
   if (!sigma) return FixedText(factor * value, digits);
   const double shown = factor * *sigma;
   const double needed = shown > 0 ? std::ceil(std::log10(0.5 / shown)) : 0.0;

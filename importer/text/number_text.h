@@ -12,7 +12,7 @@ namespace velamap {
 std::string FixedText(double value, int digits);
 
 // "31.2 +- 1.1", or only the value if it has no sigma: both times `factor`, with `sign` between
-// them. They have more decimals than `digits` where the sigma would be rounded to zero and four
+// them. They have more decimals than `digits` where the sigma would be rounded to zero and six
 // decimals are enough to show it.
 std::string UncertainText(double value, const std::optional<double>& sigma, double factor,
                           int digits, std::string_view sign);

@@ -64,15 +64,17 @@ TEST(CalibrationWriter, NamesSigmasAndOrigin) {
   EXPECT_EQ(DescribeCamera(estimate),
             "SIMPLE_RADIAL, focal length 901.2 +- 0.4 px, principal point (964.5 +- 0.5, 537.0 +- "
             "0.6) px, distortion k1 -0.2451 +- 0.0012");
+  EXPECT_THAT(DescribeCamera(estimate, "\u00b1"), HasSubstr("length 901.2 \u00b1 0.4 px"));
 }
 
 TEST(CalibrationWriter, ParametersThatWereHeldAtZeroAreNotDescribed) {
-  EstimatedCamera estimate{{CameraModel::kFullOpenCV, 1920, 1080, {901, 902, 964, 537}},
+  EstimatedCamera estimate{{CameraModel::kFullOpenCV, 1920, 1080, {901, 901, 964, 537}},
                            {0.4, 0.4, 0.5, 0.6}};
   estimate.camera.params.insert(estimate.camera.params.end(), {-0.2, 0.1, 0, 0.001, 0.03, 0, 0, 0});
-  estimate.sigmas.insert(estimate.sigmas.end(), {0.01, 0.01, 0.001, 0.001, 0.01, 0, 0, 0});
+  estimate.sigmas.insert(estimate.sigmas.end(), {0.01, 0.01, 0.00002, 0.001, 0.01, 0, 0, 0});
   const std::string text = DescribeCamera(estimate);
-  EXPECT_THAT(text, HasSubstr("p1 0.0000 +- 0.0010"));
+  EXPECT_THAT(text, HasSubstr("focal length 901.0 +- 0.4 px"));
+  EXPECT_THAT(text, HasSubstr("p1 0.00000 +- 0.00002, p2 0.0010 +- 0.0010"));
   EXPECT_THAT(text, EndsWith(", k3 0.0300 +- 0.0100"));
 }
 

@@ -19,9 +19,9 @@ TEST(UncertainText, NoSigmaIsRoundedToZero) {
   EXPECT_EQ(UncertainText(8.01234, 0.004, 1, 1, "±"), "8.012 ± 0.004");
 }
 
-TEST(UncertainText, HasFourDecimalsAtMost) {
-  EXPECT_EQ(UncertainText(8.01234, 6e-5, 1, 1, "±"), "8.0123 ± 0.0001");
-  EXPECT_EQ(UncertainText(8.01234, 4e-5, 1, 1, "±"), "8.0 ± 0.0");
+TEST(UncertainText, HasSixDecimalsAtMost) {
+  EXPECT_EQ(UncertainText(8.0123456, 6e-7, 1, 1, "±"), "8.012346 ± 0.000001");
+  EXPECT_EQ(UncertainText(8.0123456, 4e-7, 1, 1, "±"), "8.0 ± 0.0");
 }
 
 TEST(UncertainText, ASigmaOfZeroChangesNothing) {
