@@ -94,12 +94,13 @@ void WriteRegistrationCsv(const Registration& registration, std::ostream& out) {
                   "reason", "outliers");
   for (const RegisteredFrame& frame : registration.frames) {
     std::string outliers;
-    for (std::size_t i = 0; i < frame.outlier_ids.size(); ++i) {
-      outliers += (i > 0 ? "; " : "") + std::to_string(frame.outlier_ids[i]);
-      if (i < frame.outlier_reasons.size()) outliers += ": " + frame.outlier_reasons[i];
+    for (const OutlierMarker& outlier : frame.outliers) {
+      outliers += (outliers.empty() ? "" : "; ") + std::to_string(outlier.marker_id);
+      if (!outlier.reason.empty()) outliers += ": " + outlier.reason;
     }
     csv.WriteRecord(frame.image_name, frame.cam_from_shape.has_value(), frame.marker_ids.size(),
-                    frame.outlier_ids.size(), kMmPerM * frame.rms_error_m, frame.reason, outliers);
+                    frame.outliers.size(), kMmPerM * frame.rms_error_m, frame.left_out.reason,
+                    outliers);
   }
 }
 

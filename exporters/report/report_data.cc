@@ -18,7 +18,6 @@
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
-#include "reconstruct/registration/registration.h"
 
 namespace velamap {
 namespace {
@@ -142,19 +141,6 @@ Json MetricsJson(const MetricsReport& report) {
   return Json::parse(text);
 }
 
-LeftOutImages SplitLeftOut(const std::vector<ReportLeftOut>& images) {
-  LeftOutImages split;
-  const std::string not_chosen = kNotChosen;
-  for (const ReportLeftOut& image : images) {
-    if (image.reason.rfind(not_chosen, 0) == 0) {
-      split.not_needed.push_back({image.name, image.reason.substr(not_chosen.size())});
-    } else {
-      split.left_out.push_back(image);
-    }
-  }
-  return split;
-}
-
 std::vector<ReportLeftOut> AllMarkersLeftOut(std::vector<ReportLeftOut> known,
                                              const MarkerShape& shape,
                                              const ShapeMetrics& metrics) {
@@ -201,9 +187,8 @@ std::string ReportJson(const ReportInput& input) {
   json["images"] = ImagesJson(input);
   json["histograms"] = HistogramsJson(input, errors);
   json["scale"] = ScaleJson(input.scale);
-  const LeftOutImages images = SplitLeftOut(input.images_left_out);
-  json["images_left_out"] = JsonOf(images.left_out);
-  json["images_not_needed"] = JsonOf(images.not_needed);
+  json["images_left_out"] = JsonOf(input.images_left_out);
+  json["images_not_needed"] = JsonOf(input.images_not_needed);
   json["markers_left_out"] =
       JsonOf(AllMarkersLeftOut(input.markers_left_out, input.shape, input.metrics));
   if (input.audit != nullptr) json["scale_audit"] = AuditJson(*input.audit);

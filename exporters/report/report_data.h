@@ -101,6 +101,7 @@ struct ReportInput {
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};
+  std::vector<ReportLeftOut> images_not_needed = {};  // they add little to the others
   // Other missing markers of the layout are added.
   std::vector<ReportLeftOut> markers_left_out = {};
   // The given options and the versions of the libraries, for repeating the run.
@@ -109,14 +110,6 @@ struct ReportInput {
   std::optional<ReportDesign> design = {};
   std::optional<ReportClip> clip = {};  // of a video
 };
-
-// Images without a place in the model: those whose reason the user should know, and those that the
-// registration did not choose because they add little, whose reason then lacks kNotChosen.
-struct LeftOutImages {
-  std::vector<ReportLeftOut> left_out, not_needed;
-};
-
-LeftOutImages SplitLeftOut(const std::vector<ReportLeftOut>& images);
 
 // All markers that are left out, for the report and for what the program prints: those for which
 // the caller knows a reason, then other missing markers of the layout.

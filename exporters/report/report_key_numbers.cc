@@ -58,7 +58,8 @@ std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
 
 KeyNumber ImagesNumber(const ReportInput& input) {
   const std::size_t num_used = input.metric_model.images.size();
-  const std::size_t num_all = num_used + input.images_left_out.size();
+  const std::size_t num_all =
+      num_used + input.images_left_out.size() + input.images_not_needed.size();
   return {KeyNumberKind::kImages, fmt::format("{} of {}", num_used, num_all),
           num_used == num_all ? "used" : "used; the others are listed below with reasons",
           ReportStatus::kNone};

@@ -34,7 +34,7 @@ std::vector<int> FramesThatDiffer(GlobalRegistration* global) {
   std::vector<int> differ;
   for (std::size_t i = 0; i < is_repeated.size(); ++i) {
     if (is_repeated[i]) {
-      global->reason_of_image[i] = std::string(kNotChosen) + "repeats the frame before";
+      global->left_out_of_image[i].reason = "repeats the frame before";
     } else {
       differ.push_back(static_cast<int>(i));
     }
@@ -67,9 +67,9 @@ void ChooseFrames(GlobalRegistration* global) {
   std::iota(chosen.begin(), chosen.end(), 0);
   const std::size_t max_num_candidates =
       kCandidatesPerFrame * static_cast<std::size_t>(global->options.global.max_num_frames);
-  global->reason_of_image.assign(
+  global->left_out_of_image.assign(
       global->images.size(),
-      std::string(kNotChosen) + "frames next to it show more markers or are sharper");
+      {LeftOut::Cause::kNotTried, "frames next to it show more markers or are sharper"});
   if (global->is_video) {
     chosen = FramesThatDiffer(global);
     if (chosen.size() > max_num_candidates) {
@@ -81,7 +81,7 @@ void ChooseFrames(GlobalRegistration* global) {
       chosen.insert(place, global->central_image_idx);
     }
   }
-  for (const int idx : chosen) global->reason_of_image[static_cast<std::size_t>(idx)].clear();
+  for (const int idx : chosen) global->left_out_of_image[static_cast<std::size_t>(idx)] = {};
   global->image_idx_of_frame = std::move(chosen);
 }
 

@@ -30,7 +30,7 @@ void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
   const auto& pose = global.solution.Pose(frame_idx);
   if (!pose) {
-    if (frame->reason.empty()) {
+    if (frame->left_out.reason.empty()) {
       ExplainWhyNotRegistered(
           NumKnown(global.problem, global.solution, frame_idx),
           static_cast<int>(global.problem.Frame(frame_idx).observation_idxs.size()),
@@ -51,14 +51,13 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
     if (places.empty()) {
       const auto dropped = global.dropped_markers.find(observation.marker_idx);
       if (dropped == global.dropped_markers.end()) continue;
-      frame->outlier_ids.push_back(marker_id);
-      frame->outlier_reasons.push_back(kLeftOutOfAll + dropped->second.reason);
+      frame->outliers.push_back(
+          {marker_id, "left out of all images: " + dropped->second.reason, true});
       continue;
     }
     if (!global.solution.IsInlier(idx)) {
-      frame->outlier_ids.push_back(marker_id);
-      frame->outlier_reasons.push_back(
-          OutlierReason(global.problem, global.solution, global.noise, observation));
+      frame->outliers.push_back(
+          {marker_id, OutlierReason(global.problem, global.solution, global.noise, observation)});
       continue;
     }
     frame->marker_ids.push_back(marker_id);
@@ -121,7 +120,7 @@ Registration MakeRegistration(int central_idx, GlobalRegistration global) {
     RegisteredFrame frame;
     frame.image_id = global.images[idx]->image_id;
     frame.image_name = global.images[idx]->detections.image_name;
-    frame.reason = global.reason_of_image[idx];
+    frame.left_out = global.left_out_of_image[idx];
     if (frame_idx_of_image[idx] >= 0) DescribeFrame(global, frame_idx_of_image[idx], &frame);
     registration.frames.push_back(std::move(frame));
   }

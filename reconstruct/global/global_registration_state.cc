@@ -28,13 +28,13 @@ double GlobalRegistration::MedianMarkerScale() const {
   return scales.empty() ? 1.0 : Median(std::move(scales));
 }
 
-void GlobalRegistration::LeaveOut(int frame_idx, const std::string& reason) {
+void GlobalRegistration::LeaveOut(int frame_idx, LeftOut left_out) {
   solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].reset();
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     solution.is_inlier[static_cast<std::size_t>(idx)] = 0;
   }
-  reason_of_image[static_cast<std::size_t>(
-      image_idx_of_frame[static_cast<std::size_t>(frame_idx)])] = reason;
+  left_out_of_image[static_cast<std::size_t>(
+      image_idx_of_frame[static_cast<std::size_t>(frame_idx)])] = std::move(left_out);
 }
 
 void GlobalRegistration::Drop(int marker_idx, const std::string& reason) {

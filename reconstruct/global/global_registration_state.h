@@ -24,7 +24,7 @@ struct GlobalRegistration {
   MapProblem problem;
   MapSolution solution;
   MapNoise noise;
-  std::vector<std::string> reason_of_image;      // why an image is left out, by index in `images`
+  std::vector<LeftOut> left_out_of_image;        // by index in `images`
   std::map<int, DroppedMarker> dropped_markers;  // by marker_idx
   std::vector<std::string> notes;
   // Markers of the map that a frame shows although it contradicts the map, by frame_idx.
@@ -38,7 +38,7 @@ struct GlobalRegistration {
   int NumInliersInFrame(int frame_idx) const;
   double MedianMarkerScale() const;  // over the markers with two inliers or more
   // Remove a frame or a marker from the solution.
-  void LeaveOut(int frame_idx, const std::string& reason);
+  void LeaveOut(int frame_idx, LeftOut left_out);
   void Drop(int marker_idx, const std::string& reason);
 };
 

@@ -105,10 +105,11 @@ void LeaveOutScattered(int frame_idx, double ratio, GlobalRegistration* global) 
   }
   global->LeaveOut(
       frame_idx,
-      fmt::format("its corners scatter {:.0f} times as much as the other images': {}", ratio,
-                  is_blurred ? "blurred, or the surface moved"
-                             : "sharp, but of another camera, lens mode or zoom, or the surface or "
-                               "the camera moved during the exposure"));
+      {LeftOut::Cause::kUnfit,
+       fmt::format("its corners scatter {:.0f} times as much as the other images': {}", ratio,
+                   is_blurred ? "blurred, or the surface moved"
+                              : "sharp, but of another camera, lens mode or zoom, or the surface "
+                                "or the camera moved during the exposure")});
 }
 
 }  // namespace
@@ -218,7 +219,8 @@ void LimitFrames(GlobalRegistration* global) {
                                               first_idx, global->options.global.max_num_frames);
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
     if (global->solution.Pose(idx) && !std::binary_search(chosen.begin(), chosen.end(), idx)) {
-      global->LeaveOut(idx, kAddsLittle);
+      global->LeaveOut(
+          idx, {LeftOut::Cause::kAddsLittle, "adds less to the precision than the chosen frames"});
     }
   }
 }
@@ -243,11 +245,12 @@ void DropUnsupported(GlobalRegistration* global) {
       }
       global->num_contradicting_of_frame[idx] =
           NumKnown(global->problem, global->solution, idx) - global->NumInliersInFrame(idx);
-      global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images; {} are "
-                                        "needed",
-                                        global->NumInliersInFrame(idx),
-                                        global->problem.Frame(idx).observation_idxs.size(),
-                                        global->options.min_num_inliers));
+      global->LeaveOut(
+          idx, {LeftOut::Cause::kUnfit,
+                fmt::format("{} of its {} markers agree with the other images; {} are needed",
+                            global->NumInliersInFrame(idx),
+                            global->problem.Frame(idx).observation_idxs.size(),
+                            global->options.min_num_inliers)});
       changed = true;
     }
   }

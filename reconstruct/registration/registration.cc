@@ -11,10 +11,6 @@ namespace {
 
 constexpr int kManyMarkers = 8;  // more than chance or false detections spoil
 
-bool StartsWith(const std::string& text, const char* beginning) {
-  return text.rfind(beginning, 0) == 0;
-}
-
 }  // namespace
 
 int Registration::NumRegistered() const {
@@ -33,23 +29,22 @@ void CheckEnoughImages(std::size_t num_images, std::size_t needed) {
 
 void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame) {
   if (num_shared < needed) {
-    frame->reason =
+    frame->left_out.reason =
         fmt::format("shares {} of its {} markers with the registered images; {} are needed",
                     num_shared, num_markers, needed);
     return;
   }
-  frame->reason =
+  frame->left_out.reason =
       fmt::format("its {} shared markers do not agree on a position of the camera", num_shared);
   frame->num_contradicting = num_shared;
 }
 
 void CountContradictions(RegisteredFrame* frame) {
   constexpr std::size_t kMinShare_percent = 25;
-  const auto num_left_out =
-      std::count_if(frame->outlier_reasons.begin(), frame->outlier_reasons.end(),
-                    [](const auto& reason) { return StartsWith(reason, kLeftOutOfAll); });
-  const std::size_t num_outliers = frame->outlier_ids.size();
-  const int num_own = static_cast<int>(num_outliers) - static_cast<int>(num_left_out);
+  const std::size_t num_outliers = frame->outliers.size();
+  const auto num_own =
+      static_cast<int>(std::count_if(frame->outliers.begin(), frame->outliers.end(),
+                                     [](const auto& outlier) { return !outlier.is_dropped; }));
   const bool are_many =
       num_own >= kManyMarkers &&
       100 * num_outliers >= kMinShare_percent * (num_outliers + frame->marker_ids.size());
@@ -61,8 +56,9 @@ std::string CameraDoubt(const Registration& registration) {
   int num_contradicting = 0, num_frames = 0;
   for (const RegisteredFrame& frame : registration.frames) {
     const bool contradicts = frame.num_contradicting >= kManyMarkers;
+    const bool is_removed = frame.left_out.cause == LeftOut::Cause::kAddsLittle;
     num_contradicting += contradicts;
-    num_frames += contradicts || frame.cam_from_shape || frame.reason == kAddsLittle;
+    num_frames += contradicts || frame.cam_from_shape || is_removed;
   }
   if (num_contradicting == 0 || 100 * num_contradicting < kMinShare_percent * num_frames) return "";
   return fmt::format(

@@ -14,27 +14,36 @@
 
 namespace velamap {
 
-// The beginning of RegisteredFrame::reason for a frame that would add little to the registered
-// ones.
-inline constexpr char kNotChosen[] = "not chosen: ";
-// The whole reason for such a frame that had been registered.
-inline constexpr char kAddsLittle[] =
-    "not chosen: adds less to the precision than the chosen frames";
+// Why a frame is not registered.
+struct LeftOut {
+  enum class Cause {
+    kUnfit,       // it shares too little with the registered frames, or contradicts them
+    kNotTried,    // it shows what frames next to it show
+    kAddsLittle,  // it had been registered, but the others are precise enough without it
+  };
+  Cause cause = Cause::kUnfit;
+  std::string reason;  // in words; empty for a frame that is registered
 
-// The beginning of RegisteredFrame::outlier_reasons for a dropped marker.
-inline constexpr char kLeftOutOfAll[] = "left out of all images: ";
+  bool IsNotNeeded() const { return cause != Cause::kUnfit; }
+};
+
+// A marker in a frame that does not fit its position in the shape.
+struct OutlierMarker {
+  int marker_id = 0;
+  std::string reason;       // empty with kThesis
+  bool is_dropped = false;  // from all frames
+};
 
 struct RegisteredFrame {
   ImageId image_id = 0;
   std::string image_name;
-  std::optional<Rigid3> cam_from_shape;      // none: not registered, see `reason`
-  std::vector<int> marker_ids;               // inliers, ascending
-  std::vector<int> outlier_ids;              // markers that do not fit their position in the shape
-  std::vector<std::string> outlier_reasons;  // kGlobal: by outlier_ids; empty with kThesis
+  std::optional<Rigid3> cam_from_shape;  // none: not registered
+  LeftOut left_out;
+  std::vector<int> marker_ids;          // inliers, ascending
+  std::vector<OutlierMarker> outliers;  // by ascending marker_id
   // kGlobal: of the reprojection errors, as lengths at the distance of the markers. kThesis: of the
   // alignment with the mean shape.
   double rms_error_m = 0.0;
-  std::string reason;  // why it is not registered, else empty
   // The number of the shape's markers that contradict the other frames: if no pose of the camera
   // fits the frame, all that it shows; if too many are outliers for chance and false detections,
   // those; otherwise 0.
@@ -70,13 +79,13 @@ struct Registration {
 // Throws DataError if fewer than `needed` images have markers.
 void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 
-// Sets `reason` and `num_contradicting` of a frame that was not registered. It shares `num_shared`
-// of its `num_markers` markers with the registered images; `needed` is the smallest number with
-// which a frame can be registered.
+// Sets the reason and `num_contradicting` of a frame that was not registered. It shares
+// `num_shared` of its `num_markers` markers with the registered images; `needed` is the smallest
+// number with which a frame can be registered.
 void ExplainWhyNotRegistered(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
 
-// Sets `num_contradicting` of a registered frame: the outliers that are not left out of all frames,
-// if they are at least eight and all outliers are a quarter of the frame's markers.
+// Sets `num_contradicting` of a registered frame: the outliers that are not dropped from all
+// frames, if they are at least eight and all outliers are a quarter of the frame's markers.
 void CountContradictions(RegisteredFrame* frame);
 
 // Returns a warning, with the possible causes and a remedy, if at least a fifth of the frames show

@@ -31,7 +31,9 @@ bool FitsInImage(const Camera& camera, const Rigid3& cam_from_shape, const Frame
 
 RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
   const FrameShape& frame = state.frames[idx];
-  RegisteredFrame registered{frame.image_id, frame.image_name, {}, {}, {}, {}, 0.0, ""};
+  RegisteredFrame registered;
+  registered.image_id = frame.image_id;
+  registered.image_name = frame.image_name;
   const auto& alignment = state.alignments[idx];
   if (!alignment) return registered;
   registered.cam_from_shape = Inverse(alignment->shape_from_cam);
@@ -43,7 +45,11 @@ RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
         state.options.thesis.IsExact()
             ? !IsOutlier(*alignment, marker.marker_id)  // RANSAC decides alone (3.4.1)
             : FitsInImage(*state.cameras[idx], *registered.cam_from_shape, marker, place->second);
-    (fits ? registered.marker_ids : registered.outlier_ids).push_back(marker.marker_id);
+    if (fits) {
+      registered.marker_ids.push_back(marker.marker_id);
+    } else {
+      registered.outliers.push_back({marker.marker_id, ""});
+    }
   }
   return registered;
 }
@@ -112,7 +118,7 @@ void ExplainWhyNotRegistered(const RegistrationState& state, const FrameShape& s
   }
   const int needed = state.options.min_num_inliers;
   if (num_shared >= needed && time_order) {
-    frame->reason = "not selected by the search around the central frame";
+    frame->left_out.reason = "not selected by the search around the central frame";
   } else {
     ExplainWhyNotRegistered(num_shared, static_cast<int>(shape.markers.size()), needed, frame);
   }

@@ -38,7 +38,7 @@ TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
 TEST(SeedModel, RegistrationTableGivesReasonsOfOutliers) {
   Registration registration;
   registration.frames.push_back(
-      {1, "a.jpg", Rigid3{}, {3, 9}, {5, 6}, {"too far", "turned"}, 0.001, ""});
+      {1, "a.jpg", Rigid3{}, {}, {3, 9}, {{5, "too far"}, {6, "turned"}}, 0.001});
   std::ostringstream csv;
   WriteRegistrationCsv(registration, csv);
   EXPECT_THAT(csv.str(), testing::EndsWith("a.jpg,1,2,2,1,,5: too far; 6: turned\n"));
@@ -46,8 +46,9 @@ TEST(SeedModel, RegistrationTableGivesReasonsOfOutliers) {
 
 TEST(SeedModel, RegistrationTableReadsBackWithAnyName) {
   Registration registration;
-  registration.frames.push_back(
-      {1, "c,am \"00\".jpg", Rigid3{}, {3}, {5}, {"a \"b\", c"}, 0.001, "no, \"none\""});
+  RegisteredFrame frame{1, "c,am \"00\".jpg", Rigid3{}, {}, {3}, {{5, "a \"b\", c"}}, 0.001};
+  frame.left_out.reason = "no, \"none\"";
+  registration.frames.push_back(frame);
   std::stringstream csv;
   WriteRegistrationCsv(registration, csv);
   const std::vector<CsvRecord> records = ReadCsv(csv, "registration.csv");

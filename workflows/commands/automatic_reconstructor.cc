@@ -158,7 +158,8 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   for (const std::string& note : SurfaceNotes(shape)) LogInfo("surface of {}", note);
   input.clip = seed.clip;
-  input.images_left_out = summary.left_out;
+  input.images_left_out = summary.images_left_out;
+  input.images_not_needed = summary.images_not_needed;
   input.markers_left_out = NamedById(summary.dropped_markers);
   input.num_ids_found = seed.num_ids_found;
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
@@ -261,14 +262,17 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
 
   ReconstructionSummary summary;
   StageClock clock;
-  const ImportReport import = Import(options.importer, &workspace, &summary.left_out);
+  const ImportReport import = Import(options.importer, &workspace, &summary.images_left_out);
   clock.EndImport(import.times, import.num_frames_read);
   const SeedResult seed = RegisterDatabase(paths.Database().string(), options.importer.layout,
                                            options.registration, options.adjustment.markers);
   clock.End("register", static_cast<int>(seed.image_names.size()));
-  summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
+  summary.num_images_total =
+      static_cast<int>(seed.image_names.size() + summary.images_left_out.size());
   summary.dropped_markers = seed.registration.dropped_markers;
-  summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
+  summary.images_left_out.insert(summary.images_left_out.end(), seed.left_out.begin(),
+                                 seed.left_out.end());
+  summary.images_not_needed = seed.not_needed;
   AdjustAndExport(options, paths, seed, design.get(), &summary, &clock);
   WriteTimes(clock, paths);
   summary.shape.ThrowSurfaceError();

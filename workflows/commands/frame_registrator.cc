@@ -50,10 +50,9 @@ void Validate(FrameRegistratorCommandOptions* options) {
 void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {
   out << fmt::format("images_registered: {} of {}\n", seed.model.images.size(),
                      seed.image_names.size());
-  const LeftOutImages images = SplitLeftOut(seed.left_out);
-  out << fmt::format("images_left_out: {}\n", LeftOutText(images.left_out));
-  if (!images.not_needed.empty()) {
-    out << fmt::format("images_not_needed: {}\n", LeftOutText(images.not_needed));
+  out << fmt::format("images_left_out: {}\n", LeftOutText(seed.left_out));
+  if (!seed.not_needed.empty()) {
+    out << fmt::format("images_not_needed: {}\n", LeftOutText(seed.not_needed));
   }
   out << fmt::format("markers_left_out: {}\n",
                      LeftOutText(NamedById(seed.registration.dropped_markers), "marker"));

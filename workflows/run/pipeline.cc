@@ -20,21 +20,21 @@
 namespace velamap {
 namespace {
 
-std::vector<ReportLeftOut> FindLeftOut(const SeedResult& seed) {
+void FindLeftOut(SeedResult* seed) {
   std::set<std::string> used;
-  for (const ModelImage& image : seed.model.images) used.insert(image.name);
-  std::map<std::string, std::string> reasons;
-  for (const RegisteredFrame& frame : seed.registration.frames) {
-    reasons[frame.image_name] =
-        frame.reason.empty() ? "fewer than two of its markers remain" : frame.reason;
+  for (const ModelImage& image : seed->model.images) used.insert(image.name);
+  std::map<std::string, LeftOut> with_markers;
+  for (const RegisteredFrame& frame : seed->registration.frames) {
+    LeftOut& left_out = with_markers[frame.image_name] = frame.left_out;
+    if (left_out.reason.empty()) left_out.reason = "fewer than two of its markers remain";
   }
-  std::vector<ReportLeftOut> left_out;
-  for (const std::string& name : seed.image_names) {
+  for (const std::string& name : seed->image_names) {
     if (used.count(name) > 0) continue;
-    const auto it = reasons.find(name);
-    left_out.push_back({name, it == reasons.end() ? "no marker found" : it->second});
+    const auto it = with_markers.find(name);
+    const LeftOut left_out =
+        it == with_markers.end() ? LeftOut{LeftOut::Cause::kUnfit, "no marker found"} : it->second;
+    (left_out.IsNotNeeded() ? seed->not_needed : seed->left_out).push_back({name, left_out.reason});
   }
-  return left_out;
 }
 
 // Nothing for photographs.
@@ -74,9 +74,8 @@ void LogSeed(const SeedResult& seed) {
   for (const std::string& note : registration.notes) LogInfo(note);
   LogInfo("{} of {} images registered, {} markers", seed.model.images.size(),
           seed.image_names.size(), registration.shape.size());
-  const LeftOutImages images = SplitLeftOut(seed.left_out);
-  if (!images.left_out.empty()) LogInfo("images left out: {}", LeftOutText(images.left_out));
-  if (!images.not_needed.empty()) LogInfo("images not needed: {}", LeftOutText(images.not_needed));
+  if (!seed.left_out.empty()) LogInfo("images left out: {}", LeftOutText(seed.left_out));
+  if (!seed.not_needed.empty()) LogInfo("images not needed: {}", LeftOutText(seed.not_needed));
   if (const std::string doubt = CameraDoubt(registration); !doubt.empty()) LogWarning(doubt);
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (marker.is_false) {
@@ -165,7 +164,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   registration.has_calibration = database.HasCalibration();
   seed.registration = RegisterFrames(images, cameras, layout, registration);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
-  seed.left_out = FindLeftOut(seed);
+  FindLeftOut(&seed);
   std::set<int> ids;
   for (const DatabaseImage& image : images) {
     for (const MarkerDetection& marker : image.detections.markers) ids.insert(marker.marker_id);

@@ -20,10 +20,11 @@ struct SeedResult {
   Registration registration;
   Model model;
   std::vector<std::string> image_names;  // of all images in the database, sorted
-  std::vector<ReportLeftOut> left_out;   // images that the model does not hold
-  CornerErrors corner_errors;            // from the database
-  int num_ids_found = 0;                 // different marker ids in the database
-  std::optional<ReportClip> clip;        // of a video
+  // Images that the model does not hold, and those that it does not need.
+  std::vector<ReportLeftOut> left_out, not_needed;
+  CornerErrors corner_errors;      // from the database
+  int num_ids_found = 0;           // different marker ids in the database
+  std::optional<ReportClip> clip;  // of a video
 };
 
 // The part of `video` that the thesis's search around a central frame with a given number can reach

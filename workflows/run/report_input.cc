@@ -43,7 +43,8 @@ void LeaveFoldersOut(ReportInput* input) {
   for (auto* pairs : {&input->options, &input->versions}) {
     for (auto& [name, value] : *pairs) value = StripFolders(value);
   }
-  for (auto* left_out : {&input->images_left_out, &input->markers_left_out}) {
+  for (auto* left_out :
+       {&input->images_left_out, &input->images_not_needed, &input->markers_left_out}) {
     for (ReportLeftOut& one : *left_out) one.reason = StripFolders(one.reason);
   }
 }

@@ -75,8 +75,9 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
                      summary.num_images, summary.num_images_total,
                      summary.shape.model_metrics.error_px.mean,
                      RollingShutterText(summary.adjustment));
-  const std::vector<ReportLeftOut> left_out = SplitLeftOut(summary.left_out).left_out;
-  if (!left_out.empty()) out << fmt::format("images left out: {}\n", LeftOutText(left_out));
+  if (!summary.images_left_out.empty()) {
+    out << fmt::format("images left out: {}\n", LeftOutText(summary.images_left_out));
+  }
 }
 
 std::string SectionText(const Section& section) {
@@ -209,10 +210,11 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
     cameras.rows.push_back(
         {{"camera_id", static_cast<int>(camera_id)}, {"camera", DescribeCamera(camera)}});
   }
+  const auto name_of_image = [](const ReportLeftOut& image) { return image.name; };
   report.tables = {
       reasons,
-      LeftOutTable("images_left_out", "image_name", summary.left_out,
-                   [](const ReportLeftOut& image) { return image.name; }),
+      LeftOutTable("images_left_out", "image_name", summary.images_left_out, name_of_image),
+      LeftOutTable("images_not_needed", "image_name", summary.images_not_needed, name_of_image),
       LeftOutTable("markers_left_out", "marker_id", MarkersLeftOut(summary),
                    [](const ReportLeftOut& marker) { return std::stoi(marker.name); }),
       SectionTable(shape.sail.sections.sections),

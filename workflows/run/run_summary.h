@@ -22,7 +22,7 @@ enum class SummaryFormat { kText, kJson };
 struct ReconstructionSummary {
   int num_images = 0;  // images used
   int num_images_total = 0;
-  std::vector<ReportLeftOut> left_out;
+  std::vector<ReportLeftOut> images_left_out, images_not_needed;
   std::vector<DroppedMarker> dropped_markers;
   AdjustmentResult adjustment;
   ShapeExportReport shape;

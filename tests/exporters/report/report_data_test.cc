@@ -146,8 +146,8 @@ TEST_F(ReportData, MissingMarkersHaveReasons) {
 
 TEST_F(ReportData, ImagesThatAreNotNeededAreNotLeftOut) {
   ReportInput input = example_.Input();
-  input.images_left_out = {{"a.jpg", "not chosen: others are sharper"},
-                           {"b.jpg", "no marker found"}};
+  input.images_left_out = {{"b.jpg", "no marker found"}};
+  input.images_not_needed = {{"a.jpg", "others are sharper"}};
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("images_left_out"),
             json::parse(R"([{"name": "b.jpg", "reason": "no marker found"}])"));

@@ -231,7 +231,8 @@ TEST_F(ReportKeyNumbers, ImagesCountThoseLeftOut) {
   ReportInput input = example_.Input();
   EXPECT_EQ(FindIn(input, KeyNumberKind::kImages).value().meaning, "used");
   input.images_left_out = {{"a.jpg", "blurred"}};
-  EXPECT_EQ(FindIn(input, KeyNumberKind::kImages).value().value, "4 of 5");
+  input.images_not_needed = {{"b.jpg", "others are sharper"}};
+  EXPECT_EQ(FindIn(input, KeyNumberKind::kImages).value().value, "4 of 6");
 }
 
 }  // namespace

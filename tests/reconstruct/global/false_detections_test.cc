@@ -25,8 +25,7 @@ void Spoil(std::uint32_t seed, SyntheticScene* scene) {
 std::vector<std::string> OutlierReasons(const Registration& registration) {
   std::vector<std::string> reasons;
   for (const RegisteredFrame& frame : registration.frames) {
-    EXPECT_EQ(frame.outlier_ids.size(), frame.outlier_reasons.size());
-    reasons.insert(reasons.end(), frame.outlier_reasons.begin(), frame.outlier_reasons.end());
+    for (const OutlierMarker& outlier : frame.outliers) reasons.push_back(outlier.reason);
   }
   return reasons;
 }
@@ -59,7 +58,7 @@ TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
   EXPECT_LT(RmsError(registration, spoilt), 1.5 * RmsError(Register(clean), clean));
   for (std::size_t i = 5; i < spoilt.frames.size(); i += 10) {
     EXPECT_FALSE(registration.frames[i].cam_from_shape) << i;
-    EXPECT_FALSE(registration.frames[i].reason.empty());
+    EXPECT_FALSE(registration.frames[i].left_out.reason.empty());
   }
   const auto reasons = OutlierReasons(registration);
   EXPECT_GT(std::count_if(reasons.begin(), reasons.end(),
@@ -147,7 +146,8 @@ TEST(GlobalRegistration, FalseMarkerOfThreeFramesIsLeftOutBecauseOfItsLine) {
   // The table names it in the frames that it was seen in.
   const auto num_frames =
       std::count_if(registration.frames.begin(), registration.frames.end(), [](const auto& frame) {
-        return std::count(frame.outlier_ids.begin(), frame.outlier_ids.end(), 14) > 0;
+        return std::any_of(frame.outliers.begin(), frame.outliers.end(),
+                           [](const auto& outlier) { return outlier.marker_id == 14; });
       });
   EXPECT_EQ(num_frames, 3);
 

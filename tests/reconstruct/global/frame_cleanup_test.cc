@@ -20,7 +20,7 @@ TEST(LeaveOutBlurredFrames, LeavesOutTheBlurredAlone) {
   GrownMap grown(std::move(scene));
   LeaveOutBlurredFrames(&grown.global);
   EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 15, 25));
-  EXPECT_THAT(grown.global.reason_of_image[15], HasSubstr("blurred"));
+  EXPECT_THAT(grown.global.left_out_of_image[15].reason, HasSubstr("blurred"));
 }
 
 TEST(LeaveOutBlurredFrames, BlurContradictsNothing) {
@@ -45,7 +45,7 @@ TEST(LeaveOutBlurredFrames, SharpFramesThatDoNotFitContradictTheMap) {
   LeaveOutBlurredFrames(&grown.global);
   EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 15, 25));
   for (const int idx : {5, 15, 25}) {
-    EXPECT_THAT(grown.global.reason_of_image[static_cast<std::size_t>(idx)],
+    EXPECT_THAT(grown.global.left_out_of_image[static_cast<std::size_t>(idx)].reason,
                 HasSubstr("sharp, but of another camera"));
     EXPECT_GE(grown.global.num_contradicting_of_frame[idx], 8) << idx;
   }

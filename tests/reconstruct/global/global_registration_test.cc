@@ -27,7 +27,7 @@ TEST_P(NoiseFreeGlobalRegistration, GivesTheTruthBack) {
   EXPECT_TRUE(registration.notes.empty());
   for (const RegisteredFrame& frame : registration.frames) {
     ASSERT_TRUE(frame.cam_from_shape);
-    EXPECT_TRUE(frame.outlier_ids.empty());
+    EXPECT_TRUE(frame.outliers.empty());
     EXPECT_LT((frame.cam_from_shape->translation -
                TrueCamFromShape(registration, scene, frame.image_id).translation)
                   .norm(),
@@ -152,7 +152,7 @@ TEST(GlobalRegistration, LargerOfTwoGroupsIsUsed) {
   const Registration registration = Register(scene);
   EXPECT_EQ(registration.NumRegistered(), 7);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_THAT(registration.frames[i].reason, HasSubstr("shares 0 of its"));
+    EXPECT_THAT(registration.frames[i].left_out.reason, HasSubstr("shares 0 of its"));
   }
   int num_unseen = 0;
   for (const DroppedMarker& dropped : registration.dropped_markers) {
@@ -177,7 +177,7 @@ TEST(GlobalRegistration, OfALongVideoTheBestFramesAreKept) {
   for (int i = 0; i < 60; ++i) {
     const RegisteredFrame& frame = registration.frames[static_cast<std::size_t>(i)];
     if (!frame.cam_from_shape) {
-      EXPECT_FALSE(frame.reason.empty());
+      EXPECT_FALSE(frame.left_out.reason.empty());
       continue;
     }
     EXPECT_NE(i % 10, 5) << "a blurred frame was chosen";

@@ -24,7 +24,7 @@ struct GrownMap {
     for (const DatabaseImage& image : map.images) global.images.push_back(&image);
     global.image_idx_of_frame.resize(map.images.size());
     std::iota(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(), 0);
-    global.reason_of_image.resize(map.images.size());
+    global.left_out_of_image.resize(map.images.size());
     global.problem = map.problem;
     global.solution = map.TrueSolution();
     Update();
@@ -53,7 +53,7 @@ struct GrownMap {
     std::vector<int> frame_idxs;
     for (std::size_t idx = 0; idx < global.problem.frames.size(); ++idx) {
       const bool is_registered = global.solution.cam_from_shape[idx].has_value();
-      EXPECT_EQ(global.reason_of_image[idx].empty(), is_registered) << idx;
+      EXPECT_EQ(global.left_out_of_image[idx].reason.empty(), is_registered) << idx;
       if (is_registered) continue;
       EXPECT_EQ(global.NumInliersInFrame(static_cast<int>(idx)), 0);
       frame_idxs.push_back(static_cast<int>(idx));

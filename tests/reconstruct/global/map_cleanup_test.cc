@@ -206,7 +206,7 @@ TEST(DropUnsupported, OneLossBringsOnAnother) {
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(global.problem.Marker(marker_a).marker_id));
   EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(2));
   EXPECT_THAT(global.dropped_markers.at(marker_a).reason, HasSubstr("2 are needed"));
-  EXPECT_THAT(global.reason_of_image[2], HasSubstr("1 of its"));
+  EXPECT_THAT(global.left_out_of_image[2].reason, HasSubstr("1 of its"));
 }
 
 }  // namespace

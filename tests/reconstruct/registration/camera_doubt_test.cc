@@ -45,18 +45,18 @@ TEST(CameraDoubt, FewMarkersCanBeFalseOnes) {
 
 TEST(CameraDoubt, FramesThatShareTooFewMarkersContradictNothing) {
   EXPECT_THAT(CameraDoubt(RegistrationOf(50, 3)), IsEmpty());
-  EXPECT_THAT(RegistrationOf(1, 3).frames.front().reason,
+  EXPECT_THAT(RegistrationOf(1, 3).frames.front().left_out.reason,
               HasSubstr("shares 3 of its 12 markers with the registered images; 4 are needed"));
 }
 
-RegisteredFrame FrameWithOutliers(int num_inliers, int num_own, int num_left_out_of_all) {
+RegisteredFrame FrameWithOutliers(int num_inliers, int num_own, int num_dropped) {
   RegisteredFrame frame;
   frame.cam_from_shape = Rigid3();
   for (int i = 0; i < num_inliers; ++i) frame.marker_ids.push_back(i);
-  for (int i = 0; i < num_own + num_left_out_of_all; ++i) {
-    frame.outlier_ids.push_back(100 + i);
-    frame.outlier_reasons.push_back(i < num_own ? "3.1 px from its place"
-                                                : kLeftOutOfAll + std::string("a false square"));
+  for (int i = 0; i < num_own + num_dropped; ++i) {
+    const bool is_dropped = i >= num_own;
+    frame.outliers.push_back(
+        {100 + i, is_dropped ? "a false square" : "3.1 px from its place", is_dropped});
   }
   CountContradictions(&frame);
   return frame;
@@ -85,7 +85,7 @@ TEST(CameraDoubt, FramesThatOnlyAddLittleAgree) {
   Registration registration = RegistrationOf(15, 12);
   for (std::size_t i = 15; i < 60; ++i) {
     registration.frames[i] = {};
-    registration.frames[i].reason = kAddsLittle;
+    registration.frames[i].left_out.cause = LeftOut::Cause::kAddsLittle;
   }
   EXPECT_THAT(CameraDoubt(registration), IsEmpty());
 }

@@ -33,7 +33,7 @@ TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
   EXPECT_GE(registration.NumRegistered(), 20);
   for (const RegisteredFrame& frame : registration.frames) {
     if (!frame.cam_from_shape) continue;
-    EXPECT_TRUE(frame.outlier_ids.empty());
+    EXPECT_TRUE(frame.outliers.empty());
     EXPECT_LT((frame.cam_from_shape->translation -
                TrueCamFromShape(registration, scene, frame.image_id).translation)
                   .norm(),
@@ -104,8 +104,9 @@ TEST(ExactThesis, MarkersThatRansacRefusesLeaveTheirFrame) {
   std::swap(markers.front().corners_in_image_px, markers.back().corners_in_image_px);
   const Registration registration = RegisterAsThesis(scene, options);
   const RegisteredFrame& frame = registration.frames[31];
-  EXPECT_EQ(frame.outlier_ids,
-            (std::vector<int>{markers.front().marker_id, markers.back().marker_id}));
+  ASSERT_EQ(frame.outliers.size(), 2u);
+  EXPECT_EQ(frame.outliers[0].marker_id, markers.front().marker_id);
+  EXPECT_EQ(frame.outliers[1].marker_id, markers.back().marker_id);
   EXPECT_LT(MaxError(registration, scene), 1e-9);
 }
 
@@ -159,7 +160,7 @@ TEST(Registration, MisplacedMarkersAreLeftOutOfTheirFrames) {
   const Registration registration = RegisterAsThesis(scene);
   int num_outliers = 0;
   for (const RegisteredFrame& frame : registration.frames) {
-    num_outliers += static_cast<int>(frame.outlier_ids.size());
+    num_outliers += static_cast<int>(frame.outliers.size());
   }
   EXPECT_GE(num_outliers, 10);
   EXPECT_LT(MaxError(registration, scene), 0.03);
@@ -185,7 +186,7 @@ TEST(Registration, WrongFrameIsLeftOutWithAReason) {
   options.min_num_inliers = 5;
   const Registration registration = RegisterAsThesis(scene, options);
   EXPECT_FALSE(registration.frames[3].cam_from_shape);
-  EXPECT_THAT(registration.frames[3].reason, testing::HasSubstr("do not agree"));
+  EXPECT_THAT(registration.frames[3].left_out.reason, testing::HasSubstr("do not agree"));
   EXPECT_EQ(registration.NumRegistered(), 7);
 }
 
@@ -197,7 +198,7 @@ TEST(Registration, SecondGroupOfImagesIsReported) {
   const Registration registration = RegisterAsThesis(scene);
   EXPECT_EQ(registration.NumRegistered(), 7);
   for (std::size_t i = 7; i < 10; ++i) {
-    EXPECT_THAT(registration.frames[i].reason, testing::HasSubstr("shares 0 of its"));
+    EXPECT_THAT(registration.frames[i].left_out.reason, testing::HasSubstr("shares 0 of its"));
   }
 }
 

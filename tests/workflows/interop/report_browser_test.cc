@@ -78,8 +78,8 @@ class ReportBrowser : public BrowserTest {
     example.sail.surfaces = {SurfaceThrough(example.shape)};
     ReportInput input = example.Input();
     input.image_path = dir_->path().string();
-    input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"},
-                             {"frame_000201.jpg", "not chosen: frames next to it are sharper"}};
+    input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"}};
+    input.images_not_needed = {{"frame_000201.jpg", "frames next to it are sharper"}};
     input.design = ReportDesign{"design.step", 130, 31.25, {{{0, 0}, {1, 0.15}, {2.345, 0}}}};
     std::ofstream out(*dir_ / "report.html", std::ios::binary);
     WriteReport(input, out);

@@ -34,14 +34,6 @@ TEST(LeftOutTextTest, SaysTheNumberOnceForOneReason) {
             "1: its side is 2.00 times as long (marker 17)");
 }
 
-TEST(LeftOutTextTest, ImagesThatAreNotNeededStandByThemselves) {
-  const std::string not_chosen = kNotChosen;
-  const LeftOutImages images =
-      SplitLeftOut({{"a", not_chosen + "r"}, {"b", "no marker found"}, {"c", not_chosen + "r"}});
-  EXPECT_EQ(LeftOutText(images.left_out), "1: no marker found (b)");
-  EXPECT_EQ(LeftOutText(images.not_needed), "2: r (a, c)");
-}
-
 TEST(FoundCameraTextTest, OnlyAGoodCameraServesTheNextClip) {
   EstimatedCamera found{{CameraModel::kSimplePinhole, 100, 100, {100, 50, 50}}, {0.9, 0.1, 0.1}};
   Verdict verdict;
