@@ -190,9 +190,10 @@ class CameraSearch {
     constexpr int kMaxNumRounds = 4;
     constexpr double kSame = 1e-3;           // as a fraction of the larger side
     constexpr double kSameExplained = 5e-3;  // as a fraction of what is explained
+    constexpr double kEnough = 0.9;  // share; another round would be the reconstruction itself
     LogInfo("from {}: registering the pictures and adjusting the camera", start.name);
     Outcome outcome = RunOnce(start.cameras);
-    for (int round = 1; round < kMaxNumRounds; ++round) {
+    for (int round = 1; round < kMaxNumRounds && outcome.share < kEnough; ++round) {
       LogInfo(
           "from {}: once more with a focal length of {:.1f} px, {:.0f} % of the corners explained",
           start.name, MeanFocalLength(outcome.cameras.begin()->second), 100.0 * outcome.share);
