@@ -47,8 +47,9 @@ std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
 // Without the variance factor, the correlation factor and the share of large residuals.
 AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
                                     const MarkerLinearization& linearization) {
-  AdjustmentUncertainty uncertainty = MakeUncertainty(
-      linearization.state, solution.weights, linearization.problem, linearization.covariance);
+  AdjustmentUncertainty uncertainty =
+      MakeUncertainty(solution.options, linearization.state, solution.weights,
+                      linearization.problem, linearization.covariance);
   if (solution.weights.scale_bars.empty()) {
     uncertainty.print_scale_sigma =
         std::min(solution.options.common_print_tolerance, uncertainty.relative_scale_sigma);

@@ -10,14 +10,20 @@
 namespace velamap {
 namespace {
 
+// L^-1 e for the global in `column`: its variance is the squared norm, and -factor times it is its
+// covariance with the points.
+Eigen::VectorXd InverseRoot(const MarkerCovariance& covariance, int column) {
+  Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
+  covariance.root.triangularView<Eigen::Lower>().solveInPlace(unit);
+  return unit;
+}
+
 // 1 sigma of the global in `column`, with the scale bars as additional measurements.
 double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCovariance& points,
                    const Eigen::MatrixXd& bar_gradients, const Eigen::VectorXd& bar_sigmas) {
-  Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
-  covariance.root.triangularView<Eigen::Lower>().solveInPlace(unit);
+  const Eigen::VectorXd unit = InverseRoot(covariance, column);
   double variance = unit.squaredNorm();
   if (bar_gradients.cols() > 0) {
-    // cov(points, global) = -factor * unit.
     const Eigen::VectorXd with_bars = -bar_gradients.transpose() * (points.factor * unit);
     Eigen::MatrixXd innovation = bar_gradients.transpose() * Multiply(points, bar_gradients);
     innovation.diagonal() += bar_sigmas.cwiseAbs2();
@@ -33,6 +39,36 @@ Eigen::MatrixXd BarGradients(const std::vector<ScaleBar>& bars, const MarkerStat
     gradients.col(static_cast<Eigen::Index>(i)) = BarGradient(bars[i], state);
   }
   return gradients;
+}
+
+// From the middle of its marker to each corner; 0 for markers without all corners.
+Eigen::VectorXd OffsetsInMarkers(const MarkerState& state, Eigen::Index num_rows) {
+  Eigen::VectorXd offsets = Eigen::VectorXd::Zero(num_rows);
+  Eigen::Index row = 0;
+  for (const MarkerBlock& marker : state.markers) {
+    if (marker.corners.size() == kNumCorners) {
+      const Eigen::Map<const Eigen::Matrix<double, 3, kNumCorners>> corners(
+          marker.x_in_world.data());
+      offsets.segment<3 * kNumCorners>(row) =
+          (corners.colwise() - corners.rowwise().mean()).reshaped();
+    }
+    row += marker.NumCoordinates();
+  }
+  return offsets;
+}
+
+// The scale of the print, which scales all points, contains the error that the inset makes. Markers
+// keep their printed sides whatever the inset is, so that it only scales the distances between
+// them. `share` is its part of the variance assumed for that scale, `sigma` its own.
+void HoldSidesAgainstInset(const MarkerState& state, double share, double sigma,
+                           const Eigen::VectorXd& inverse_root_of_scale, PointCovariance* points) {
+  const Eigen::VectorXd offsets = OffsetsInMarkers(state, points->factor.rows());
+  // inset = share * scale + rest, and only the scale is correlated with the points.
+  points->factor += share * offsets * inverse_root_of_scale.transpose();
+  const Eigen::Index num_columns = points->factor.cols();
+  points->factor.conservativeResize(Eigen::NoChange, num_columns + 1);
+  points->factor.col(num_columns) = sigma * std::sqrt(1 - share) * offsets;
+  points->signs.setOnes(num_columns + 1);
 }
 
 }  // namespace
@@ -76,8 +112,7 @@ Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerSta
   Eigen::MatrixXd result = gradients.transpose() * Multiply(points, gradients);
   const int column = GlobalColumn(problem, &state.print_scale);
   if (column < 0) return result;
-  Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
-  covariance.root.triangularView<Eigen::Lower>().solveInPlace(unit);
+  const Eigen::VectorXd unit = InverseRoot(covariance, column);
   const Eigen::VectorXd with_scale = gradients.transpose() * (points.factor * unit);
   return result - with_scale * with_scale.transpose() / unit.squaredNorm();
 }
@@ -105,7 +140,8 @@ double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& 
   return num_residuals - num_parameters;
 }
 
-AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,
+AdjustmentUncertainty MakeUncertainty(const MarkerAdjustmentOptions& options,
+                                      const MarkerState& state, const MarkerWeights& weights,
                                       const MarkerProblem& problem,
                                       const MarkerCovariance& covariance) {
   AdjustmentUncertainty uncertainty;
@@ -128,6 +164,12 @@ AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeig
   if (shutter_column >= 0) {
     uncertainty.rolling_shutter_sigma_s =
         GlobalSigma(covariance, shutter_column, points, bar_gradients, bar_sigmas);
+  }
+  const int scale_column = GlobalColumn(problem, &state.print_scale);
+  if (scale_column >= 0 && weights.inset_as_scale > 0) {
+    const double ratio = weights.inset_as_scale / PrintScaleSigma(options, weights);
+    HoldSidesAgainstInset(state, ratio * ratio, weights.inset_as_scale,
+                          InverseRoot(covariance, scale_column), &points);
   }
   AddMeasurements(bar_gradients, bar_sigmas, &points);
   const std::vector<Eigen::Vector3d> positions = Positions(state);

@@ -37,7 +37,8 @@ double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& 
 
 // Everything but the variance factor, the correlation factor and the share of large residuals.
 // `weights` and `problem` belong to `state` and have no loss.
-AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,
+AdjustmentUncertainty MakeUncertainty(const MarkerAdjustmentOptions& options,
+                                      const MarkerState& state, const MarkerWeights& weights,
                                       const MarkerProblem& problem,
                                       const MarkerCovariance& covariance);
 

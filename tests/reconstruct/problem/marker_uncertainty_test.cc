@@ -64,7 +64,8 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
       MakeMarkerProblem(options, model, corner_errors, model.cameras, weights, &state);
   const auto covariance = InvertNormalEquations(EvaluateJacobian(problem), 1);
   ASSERT_TRUE(covariance.has_value());
-  const AdjustmentUncertainty uncertainty = MakeUncertainty(state, weights, problem, *covariance);
+  const AdjustmentUncertainty uncertainty =
+      MakeUncertainty(options, state, weights, problem, *covariance);
 
   const Eigen::MatrixXd jacobian = DenseJacobian(problem);
   // Scaled, so that the dense inverse is good to the digits asked for.
@@ -158,6 +159,21 @@ Sim3 AddCoordinates(const Model& model, const Model& truth, const PointCovarianc
   return EstimateSim3(x_in_truth, x_in_world);
 }
 
+using PointPair = std::pair<Point3DId, Point3DId>;
+
+// Adds the error of the distance between two points.
+void AddLength(const Model& model, const Model& truth, const PointCovariance& covariance,
+               const PointPair& ends, Coverage* lengths) {
+  const auto& [id1, id2] = ends;
+  const Eigen::Vector3d line =
+      model.points3D.at(id2).x_in_world - model.points3D.at(id1).x_in_world;
+  const double true_length =
+      (truth.points3D.at(id2).x_in_world - truth.points3D.at(id1).x_in_world).norm();
+  const Eigen::Vector3d direction = line.normalized();
+  lengths->Add(line.norm() - true_length,
+               std::sqrt(VarianceOf(covariance, {{id1, -direction}, {id2, direction}})));
+}
+
 // Errors that pass from one frame of a video to the next count as fewer frames: with independent
 // ones alone (1.7 times too small here) the mean square is 3 and 44 % lie within one sigma.
 TEST_F(Repetitions, ErrorsThatFramesHaveInCommonAreCounted) {
@@ -227,15 +243,8 @@ TEST_F(Repetitions, ErrorsAreWithinTheirSigmasAsOftenAsTheyShould) {
 
     const Sim3 world_from_truth = AddCoordinates(model, truth, points, &coordinates);
     scales.Add(world_from_truth.scale - 1.0, summary.uncertainty.relative_scale_sigma);
-    for (const auto& [id1, id2] :
-         {std::pair<Point3DId, Point3DId>{1, 54}, {1, 2}, {12, 41}, {23, 34}}) {
-      const Eigen::Vector3d line =
-          model.points3D.at(id2).x_in_world - model.points3D.at(id1).x_in_world;
-      const double true_length =
-          (truth.points3D.at(id2).x_in_world - truth.points3D.at(id1).x_in_world).norm();
-      const Eigen::Vector3d direction = line.normalized();
-      lengths.Add(line.norm() - true_length,
-                  std::sqrt(VarianceOf(points, {{id1, -direction}, {id2, direction}})));
+    for (const PointPair& ends : {PointPair{1, 54}, {1, 2}, {12, 41}, {23, 34}}) {
+      AddLength(model, truth, points, ends, &lengths);
     }
   }
   // Sigmas that are 15 % too large or too small give 0.755 or 0.614, and 0.979 or 0.918.
@@ -244,6 +253,40 @@ TEST_F(Repetitions, ErrorsAreWithinTheirSigmasAsOftenAsTheyShould) {
   EXPECT_NEAR(lengths.Within1(), 0.683, 0.045);
   EXPECT_NEAR(lengths.MeanSquare(), 1.0, 0.22);
   EXPECT_NEAR(scales.MeanSquare(), 1.0, 0.28);  // 150 numbers: +- 0.115
+}
+
+// It leaves the sides as they are printed: with the sigma of the scale, the mean square of their
+// errors is 0.02.
+TEST_F(Repetitions, AnInsetThatIsNotEstimatedMovesMarkersApart) {
+  constexpr double kSmallCornerSigma = 0.02;
+  const SyntheticScene scene = TinyScene();
+  MarkerAdjustmentOptions options;
+  options.print_tolerance = 3e-3;
+  options.cloth_flatness = 5e-3;
+  options.common_print_tolerance = 0;
+  options.inset_sigma_px = 0.2;
+  Coverage sides, distances;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (std::uint32_t seed = 0; seed < kNumRepetitions; ++seed) {
+    SyntheticScene seen =
+        WithPrintErrors(scene, options.print_tolerance, options.cloth_flatness, 1000 + seed);
+    const Model truth = MakeSceneModel(seen);
+    const double inset_px = options.inset_sigma_px * normal(random);
+    AddInset([&](const MarkerDetection&) { return inset_px; }, &seen);
+    AddNoise({kSmallCornerSigma, 0, 0, 200, seed}, &seen);
+    Model model = MakeSceneModel(seen);
+    const PointCovariance points =
+        AdjustWithMarkers(options, scene.layout, {}, &model).uncertainty.points;
+    for (const Point3DId first : {1, 11, 21, 31, 41, 51}) {
+      AddLength(model, truth, points, {first, first + 1}, &sides);
+    }
+    for (const PointPair& ends : {PointPair{2, 12}, {1, 54}}) {
+      AddLength(model, truth, points, ends, &distances);
+    }
+  }
+  EXPECT_NEAR(sides.MeanSquare(), 1.0, 0.28);
+  EXPECT_NEAR(distances.MeanSquare(), 1.0, 0.28);
 }
 
 }  // namespace
