@@ -67,7 +67,7 @@ void HoldSidesAgainstInset(const MarkerState& state, double share, double sigma,
   points->factor += share * offsets * inverse_root_of_scale.transpose();
   const Eigen::Index num_columns = points->factor.cols();
   points->factor.conservativeResize(Eigen::NoChange, num_columns + 1);
-  points->factor.col(num_columns) = sigma * std::sqrt(1 - share) * offsets;
+  points->factor.col(num_columns) = sigma * std::sqrt(std::max(0.0, 1 - share)) * offsets;
   points->signs.setOnes(num_columns + 1);
 }
 

@@ -25,7 +25,8 @@ void FindLeftOut(SeedResult* seed) {
   for (const ModelImage& image : seed->model.images) used.insert(image.name);
   std::map<std::string, LeftOut> with_markers;
   for (const RegisteredFrame& frame : seed->registration.frames) {
-    LeftOut& left_out = with_markers[frame.image_name] = frame.left_out;
+    LeftOut& left_out = with_markers[frame.image_name];
+    left_out = frame.left_out;
     if (left_out.reason.empty()) left_out.reason = "fewer than two of its markers remain";
   }
   for (const std::string& name : seed->image_names) {
