@@ -54,7 +54,7 @@ void WarnOfSymmetries(const FrameDetector& detector) {
   }
   if (ids.empty()) return;
   LogWarning(
-      "{}: markers {} look the same when turned: their corners are numbered by their neighbours",
+      "{}: markers that look the same when turned: {}; their neighbours number their corners",
       detector.dictionary.name, fmt::join(ids, " "));
 }
 
