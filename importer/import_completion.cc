@@ -1,15 +1,36 @@
 #include "importer/import_completion.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/ranges.h>
+
+#include "importer/base/log.h"
 #include "importer/base/natural_order.h"
 #include "importer/database/correspondence.h"
 #include "importer/rotation/rotation_evidence.h"
 
 namespace velamap {
+namespace {
+
+// Of the markers that were found: dictionaries have such codes that no print shows.
+void WarnOfSymmetries(const FrameDetector& detector, const std::vector<FrameDetections>& frames) {
+  std::set<int> ids;
+  for (const FrameDetections& frame : frames) {
+    for (const MarkerDetection& marker : frame.markers) {
+      if (detector.symmetries.count(marker.marker_id) > 0) ids.insert(marker.marker_id);
+    }
+  }
+  if (ids.empty()) return;
+  LogWarning(
+      "{}: markers that look the same when turned: {}; their neighbours number their corners",
+      detector.dictionary.name, fmt::join(ids, " "));
+}
+
+}  // namespace
 
 int ResolveDoubtfulRotations(const FrameDetector& detector, ColmapDatabase* database) {
   if (detector.symmetries.empty()) return 0;
@@ -18,6 +39,7 @@ int ResolveDoubtfulRotations(const FrameDetector& detector, ColmapDatabase* data
   for (const DatabaseImage& image : images) frames.push_back(image.detections);
   const std::vector<std::size_t> changed =
       ResolveRotationsAcrossFrames(detector.symmetries, detector.graph, &frames);
+  WarnOfSymmetries(detector, frames);
   int num_resolved = 0;
   const std::string description = database->ReadDetector().value();
   ColmapDatabase::Transaction transaction(database);

@@ -10,7 +10,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
-#include "importer/base/log.h"
 #include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
@@ -45,17 +44,6 @@ void CheckLayoutIds(const Layout& layout, const Dictionary& dictionary) {
                     "have (its ids are 0 to {}); correct the id or the dictionary",
                     id, dictionary.name, num_markers - 1));
   }
-}
-
-void WarnOfSymmetries(const FrameDetector& detector) {
-  std::vector<int> ids;
-  for (const auto& [id, turns] : detector.symmetries) {
-    if (detector.part_of_id.empty() || detector.part_of_id.count(id) > 0) ids.push_back(id);
-  }
-  if (ids.empty()) return;
-  LogWarning(
-      "{}: markers that look the same when turned: {}; their neighbours number their corners",
-      detector.dictionary.name, fmt::join(ids, " "));
 }
 
 std::string DescribeCodes(const std::string& dictionary_name, int border_bits) {
@@ -101,7 +89,6 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
     const bool is_known = detector.part_of_id.empty() || detector.part_of_id.count(id) > 0;
     if (is_known && id < NumMarkers(detector.dictionary)) detector.prior_shape[id] = in_shape_m;
   }
-  WarnOfSymmetries(detector);
   return detector;
 }
 

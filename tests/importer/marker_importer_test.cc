@@ -17,6 +17,8 @@ namespace velamap {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(MarkerImporterTest, FolderOfImages) {
   WritePicture("2.png", 0, {1, 2});
@@ -168,6 +170,20 @@ TEST_F(MarkerImporterTest, SymmetricMarkersAloneAreNotTakenForDuplicates) {
   options_.layout = MakeLayout("THESIS_3X3_130", 0.1);
   ExpectThrows<DataError>([&] { ImportMarkers(options_); },
                           {"1 because their code looks the same when turned"});
+}
+
+TEST_F(MarkerImporterTest, WarnsOfSymmetricMarkersThatAreSeen) {
+  options_.layout = MakeLayout("THESIS_3X3_130", 0.1);
+  const auto log_of = [&](int marker_id) {
+    WritePicture("1.png", 0, {1, marker_id}, "THESIS_3X3_130");
+    WritePicture("2.png", 1, {1, marker_id}, "THESIS_3X3_130");
+    fs::remove(options_.database_path);
+    testing::internal::CaptureStdout();
+    ImportMarkers(options_);
+    return testing::internal::GetCapturedStdout();
+  };
+  EXPECT_THAT(log_of(125), HasSubstr("look the same when turned: 125; "));
+  EXPECT_THAT(log_of(2), Not(HasSubstr("look the same")));
 }
 
 TEST_F(MarkerImporterTest, BrokenImagesAreSkippedUnlessAllAre) {
