@@ -118,8 +118,9 @@ void MarkerAdjuster::AdjustWithLooseSizes() {
 }
 
 void MarkerAdjuster::MeasureChords() {
-  // The neighbours show the curvature between markers, not that of the marker itself.
-  constexpr double kUnknownShare = 0.25;
+  // The neighbours show the curvature between markers, not that of the marker itself; and the flat
+  // pattern that is fitted to a bent marker has its corners outside, by up to as much.
+  constexpr double kUnknownShare = 0.5;
   constexpr double kWorthAWarning = 5e-4;
   MarkerState state = solution_.state;
   const ChordSummary chords = SetChords(&state);

@@ -30,22 +30,26 @@ struct Curvature {
   Eigen::Vector3d second_1_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
-  // Square of the curvature along a direction in the plane of the marker, less its variance.
-  double SquareAlong(const Eigen::Vector2d& direction) const {
+  // Square of the bend of a side along a direction in the plane of the marker, as an angle, less
+  // its variance. The middle of a bent marker's corners lies inside the surface, by the mean of
+  // what its two sides bend, so that places on it show a smaller radius.
+  double SquaredBend(const Eigen::Vector2d& direction, double side_m) const {
     const Eigen::Vector3d by_second(direction.x() * direction.x(),
                                     2 * direction.x() * direction.y(),
                                     direction.y() * direction.y());
     const double value = by_second.dot(second_1_m);
-    return std::max(0.0, value * value - by_second.dot(covariance * by_second));
+    const double inside_m = (second_1_m.x() + second_1_m.z()) * side_m * side_m / 8;
+    const double square = value * value * (1 - 2 * value * inside_m);
+    return side_m * side_m * std::max(0.0, square - by_second.dot(covariance * by_second));
   }
 };
 
-// The quadratic surface through a marker that explains the neighbours. Their tilts and heights,
-// divided by their distances, are taken to be equally exact.
+// The surface of constant curvature through a marker that explains the neighbours. Their tilts and
+// heights, divided by their distances, are taken to be equally exact.
 std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
                                      const std::vector<Rigid3>& world_from_neighbors) {
-  constexpr double kMinCosine = 0.85;      // of the angle between neighbours; farther ones are on
-                                           // another face
+  constexpr double kMinCosine = 0.64;      // of the angle between neighbours, 50 degrees; others
+                                           // are on another face
   constexpr double kMaxUnexplained = 0.3;  // of the squares
   constexpr double kRidge = 1e-3;          // holds what neighbours in one line leave open
   constexpr int kMinObservations = 6;
@@ -69,7 +73,8 @@ std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
     const double x = place.x() / distance, y = place.y() / distance;
     add({x, y, 0}, -axis.x() / distance);
     add({0, x, y}, -axis.y() / distance);
-    add({x * x, 2 * x * y, y * y}, 2 * place.z() / (distance * distance));
+    // Both are exact for a circle, however long the arc is.
+    add({x * x, 2 * x * y, y * y}, 2 * place.z() / place.squaredNorm());
   }
   if (count < kMinObservations) return std::nullopt;
   normal.diagonal().array() += kRidge * count;
@@ -113,7 +118,7 @@ ChordSummary SetChords(MarkerState* state) {
     for (std::size_t side = 0; side < kNumCorners; ++side) {
       const Eigen::Vector2d along =
           side % 2 == 0 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
-      const double squared_bend = marker.length_m * marker.length_m * curvature->SquareAlong(along);
+      const double squared_bend = curvature->SquaredBend(along, marker.length_m);
       if (squared_bend < kMinBend * kMinBend) continue;
       const double of_side = std::min(kMaxShortening, squared_bend / 24);
       marker.chord_ratios[side] = 1 - of_side;

@@ -15,11 +15,11 @@ struct ChordSummary {
 
 // Sets the chord ratios of all markers, 1 - (a kappa)^2 / 24 for an arc of the printed length a
 // with the normal curvature kappa along the side. The curvature of a marker follows from the places
-// and tilts of its neighbours on the same part within four sides, by a least-squares fit of a
-// quadratic surface, and its variance is subtracted from its square. Sides stay as printed where
-// a kappa is below 0.1, where there are no neighbours, on parts that the layout calls rigid, whose
-// faces may be flat, and where the neighbours contradict one smooth surface, as at the edge between
-// two walls.
+// and tilts of its neighbours on the same part within four sides, which are tilted by less than 50
+// degrees relative to it, by a least-squares fit, and its variance is subtracted from its square.
+// Sides stay as printed where a kappa is below 0.1, where there are no neighbours, on parts that
+// the layout calls rigid, whose faces may be flat, and where the neighbours contradict one smooth
+// surface, as at the edge between two walls.
 ChordSummary SetChords(MarkerState* state);
 
 }  // namespace velamap

@@ -66,6 +66,17 @@ TEST(MarkerCurvature, SidesAroundACylinderAreChords) {
   }
 }
 
+// As on a buoy: neighbours are 45 degrees apart.
+TEST(MarkerCurvature, FewMarkersAroundACylinderShowItsCurvature) {
+  const double radius_m = 1.5 * kSide_m / (45.0 * kRadPerDeg);
+  MarkerState state = MarkersOn(Cylinder(radius_m), 2e-4);
+  SetChords(&state);
+  for (const MarkerBlock& marker : state.markers) {
+    EXPECT_NEAR(marker.chord_ratios[0], Chord(radius_m), 3e-4) << marker.marker_id;
+    EXPECT_NEAR(marker.chord_ratios[1], 1, 1e-4) << marker.marker_id;
+  }
+}
+
 TEST(MarkerCurvature, CornersOfFlatMarkersWithNoiseStayAsPrinted) {
   MarkerState state = MarkersOn([](double u, double v) { return Eigen::Vector3d(u, v, 0); }, 3e-4);
   EXPECT_LT(SetChords(&state).largest_shortening, 2e-6);
