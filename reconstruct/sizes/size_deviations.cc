@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -15,16 +16,27 @@
 namespace velamap {
 namespace {
 
+struct MedianSize {
+  double ratio = 0.0;
+  Eigen::VectorXd by_factor;
+};
+
+MedianSize MedianOf(const std::vector<MarkerSize>& sizes, MarkerIdxs idxs) {
+  std::sort(idxs.begin(), idxs.end(),
+            [&](std::size_t a, std::size_t b) { return sizes[a].ratio < sizes[b].ratio; });
+  const MarkerSize& below = sizes[idxs[(idxs.size() - 1) / 2]];
+  const MarkerSize& above = sizes[idxs[idxs.size() / 2]];
+  return {0.5 * (below.ratio + above.ratio), 0.5 * (below.by_factor + above.by_factor)};
+}
+
 void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const MarkerIdxs& others,
              double extra_variance, Deviations* deviations) {
-  std::vector<double> ratios;
-  for (const std::size_t i : others) ratios.push_back(sizes[i].ratio);
-  const double median = Median(std::move(ratios));
-  const Eigen::VectorXd mean_by_factor = MeanByFactor(sizes, others);
+  const MedianSize median = MedianOf(sizes, others);
   for (const std::size_t i : idxs) {
-    deviations->values[i] = sizes[i].ratio / median - 1.0;
-    deviations->variances[i] = sizes[i].block_variance +
-                               (sizes[i].by_factor - mean_by_factor).squaredNorm() + extra_variance;
+    deviations->values[i] = sizes[i].ratio / median.ratio - 1.0;
+    deviations->shared[i] = sizes[i].by_factor - median.by_factor;
+    deviations->variances[i] =
+        sizes[i].block_variance + deviations->shared[i].squaredNorm() + extra_variance;
   }
 }
 
@@ -58,7 +70,6 @@ std::vector<bool> AreBeyond(const std::vector<double>& normalized) {
   return are_beyond;
 }
 
-// The values that are not left out.
 struct SizeScatter {
   double sum_of_squares = 0.0;
   double degrees_of_freedom = 0.0;
@@ -76,18 +87,50 @@ struct SizeScatter {
   }
 };
 
-SizeScatter ScatterWithout(const std::vector<bool>& is_left_out,
-                           const std::vector<double>& normalized, std::size_t num_groups) {
-  SizeScatter scatter;
-  double num = 0.0;
-  for (std::size_t i = 0; i < normalized.size(); ++i) {
-    if (is_left_out[i]) continue;
-    scatter.sum_of_squares += normalized[i] * normalized[i];
-    num += 1.0;
+// The deviations that are not left out, in combinations whose errors are independent.
+class IndependentDeviations {
+ public:
+  IndependentDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
+                        const std::vector<bool>& is_left_out) {
+    MarkerIdxs idxs;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      if (!is_left_out[i]) idxs.push_back(i);
+    }
+    const auto num = static_cast<Eigen::Index>(idxs.size());
+    // In units in which the print has the same variance for all markers.
+    Eigen::VectorXd roots(num), values(num);
+    Eigen::MatrixXd covariance(num, num);  // only the lower triangle is read
+    for (Eigen::Index row = 0; row < num; ++row) {
+      const std::size_t i = idxs[static_cast<std::size_t>(row)];
+      roots[row] = std::sqrt(sizes[i].num_sides);
+      values[row] = deviations.values[i];
+      covariance(row, row) = deviations.variances[i];
+      for (Eigen::Index column = 0; column < row; ++column) {
+        const std::size_t j = idxs[static_cast<std::size_t>(column)];
+        covariance(row, column) = deviations.shared[i].dot(deviations.shared[j]);
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(roots.asDiagonal() * covariance *
+                                                               roots.asDiagonal());
+    values_ = eigen.eigenvectors().transpose() * values.cwiseProduct(roots);
+    variances_ = eigen.eigenvalues().cwiseMax(0.0);
+    degrees_of_freedom_ =
+        std::max(1.0, static_cast<double>(num) - static_cast<double>(deviations.num_groups));
   }
-  scatter.degrees_of_freedom = std::max(1.0, num - static_cast<double>(num_groups));
-  return scatter;
-}
+
+  // In sigmas of image noise and print together.
+  Eigen::ArrayXd Normalized(double tolerance) const {
+    return values_ / (variances_ + tolerance * tolerance).sqrt();
+  }
+
+  SizeScatter Scatter(double tolerance) const {
+    return {Normalized(tolerance).square().sum(), degrees_of_freedom_};
+  }
+
+ private:
+  Eigen::ArrayXd values_, variances_;
+  double degrees_of_freedom_ = 0.0;
+};
 
 // Whether at least two thirds of the markers are not contradicting.
 bool MostAgree(const std::vector<bool>& is_contradicting) {
@@ -189,24 +232,25 @@ SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<Ma
   // Rousseeuw ("Time-efficient algorithms for two highly robust estimators of scale", 1992).
   const double for_few =
       static_cast<double>(sizes.size()) / static_cast<double>(sizes.size() - deviations.num_groups);
-  const auto robust_scatter = [&](double tolerance) {
+  const double robust_tolerance = ExplainingTolerance(print_tolerance, [&](double tolerance) {
     return for_few * RobustSigma(normalize(tolerance));
-  };
-  std::vector<bool> is_beyond =
-      AreBeyond(normalize(ExplainingTolerance(print_tolerance, robust_scatter)));
+  });
+  std::vector<bool> is_beyond = AreBeyond(normalize(robust_tolerance));
   const bool most_agree = MostAgree(is_beyond);
   if (!most_agree) is_beyond.assign(sizes.size(), false);
   const bool are_many = sizes.size() >= kManyOfGroup * deviations.num_groups;
-  const auto scatter = [&](double tolerance) {
-    return ScatterWithout(is_beyond, normalize(tolerance), deviations.num_groups);
-  };
-  const bool is_wide = !are_many || !most_agree || robust_scatter(print_tolerance) > kMaxScatter;
+  const IndependentDeviations independent(deviations, sizes, is_beyond);
+  const Eigen::ArrayXd normalized = independent.Normalized(print_tolerance);
+  const bool is_wide = !are_many || !most_agree ||
+                       for_few * RobustSigma({normalized.begin(), normalized.end()}) > kMaxScatter;
   SizeAgreement agreement;
-  agreement.scatters_more = are_many ? is_wide && scatter(print_tolerance).IsBeyondChance()
-                                     : !MostAgree(AreBeyond(normalize(print_tolerance)));
+  agreement.scatters_more = are_many
+                                ? is_wide && independent.Scatter(print_tolerance).IsBeyondChance()
+                                : !MostAgree(AreBeyond(normalize(print_tolerance)));
   agreement.print_tolerance =
-      is_wide ? ExplainingTolerance(print_tolerance,
-                                    [&](double tolerance) { return scatter(tolerance).Widened(); })
+      is_wide ? ExplainingTolerance(
+                    print_tolerance,
+                    [&](double tolerance) { return independent.Scatter(tolerance).Widened(); })
               : print_tolerance;
   agreement.sigmas = normalize(agreement.print_tolerance);
   agreement.is_contradicting = AreBeyond(agreement.sigmas);

@@ -54,8 +54,10 @@ Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerI
 // its variance due to image noise and the printer's dots. Errors that the whole group shares, such
 // as the scale, cancel.
 struct Deviations {
-  explicit Deviations(std::size_t size) : values(size), variances(size) {}
+  explicit Deviations(std::size_t size) : values(size), variances(size), shared(size) {}
   std::vector<double> values, variances;
+  // The part of the variances that markers share: as MarkerSize::by_factor, less the median's.
+  std::vector<Eigen::VectorXd> shared;
   std::size_t num_groups = 0;  // medians that come from the markers themselves
 };
 
@@ -88,7 +90,8 @@ struct SizeAgreement {
 // expectation in a fifth of the cases. Fewer markers may agree by chance, so it is always raised to
 // their scatter, which is widened by Student's t; they scatter clearly more if more than a third of
 // them would contradict the others at the given tolerance.
-// `sizes` must not be empty.
+// Errors that markers share, such as those of a camera that is hardly known, count once, however
+// many markers show them. `sizes` must not be empty.
 SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                               double print_tolerance);
 
