@@ -31,8 +31,8 @@ struct Curvature {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   // Square of the bend of a side along a direction in the plane of the marker, as an angle, less
-  // its variance. The middle of a bent marker's corners lies inside the surface, by the mean of
-  // what its two sides bend, so that places on it show a smaller radius.
+  // its variance. The mean of a bent marker's corners lies inside the surface, by the sagittas of
+  // its two sides, so that the places of neighbours show a smaller radius.
   double SquaredBend(const Eigen::Vector2d& direction, double side_m) const {
     const Eigen::Vector3d by_second(direction.x() * direction.x(),
                                     2 * direction.x() * direction.y(),

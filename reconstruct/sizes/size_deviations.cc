@@ -97,22 +97,22 @@ class IndependentDeviations {
       if (!is_left_out[i]) idxs.push_back(i);
     }
     const auto num = static_cast<Eigen::Index>(idxs.size());
-    // In units in which the print has the same variance for all markers.
+    // Times the roots of the numbers of sides, so that the print has the same variance for all.
     Eigen::VectorXd roots(num), values(num);
-    Eigen::MatrixXd covariance(num, num);  // only the lower triangle is read
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(num, num);  // the lower triangle
     for (Eigen::Index row = 0; row < num; ++row) {
       const std::size_t i = idxs[static_cast<std::size_t>(row)];
       roots[row] = std::sqrt(sizes[i].num_sides);
-      values[row] = deviations.values[i];
-      covariance(row, row) = deviations.variances[i];
+      values[row] = roots[row] * deviations.values[i];
+      covariance(row, row) = sizes[i].num_sides * deviations.variances[i];
       for (Eigen::Index column = 0; column < row; ++column) {
         const std::size_t j = idxs[static_cast<std::size_t>(column)];
-        covariance(row, column) = deviations.shared[i].dot(deviations.shared[j]);
+        covariance(row, column) =
+            roots[row] * roots[column] * deviations.shared[i].dot(deviations.shared[j]);
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(roots.asDiagonal() * covariance *
-                                                               roots.asDiagonal());
-    values_ = eigen.eigenvectors().transpose() * values.cwiseProduct(roots);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    values_ = eigen.eigenvectors().transpose() * values;
     variances_ = eigen.eigenvalues().cwiseMax(0.0);
     degrees_of_freedom_ =
         std::max(1.0, static_cast<double>(num) - static_cast<double>(deviations.num_groups));
