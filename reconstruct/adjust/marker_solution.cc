@@ -12,6 +12,7 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/problem/scale_bar.h"
+#include "reconstruct/sizes/student_factor.h"
 
 namespace velamap {
 namespace {
@@ -147,9 +148,11 @@ double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization) {
   const auto& [state, problem, jacobian, covariance] = linearization;
   const int column = GlobalColumn(problem, &state.rolling_shutter_s);
-  const double factor = GlobalCorrelationFactor(state, problem, jacobian, covariance,
-                                                GroupImages(solution.model, kNumCorrelationGroups),
-                                                column, solution.options.num_threads);
+  const std::vector<int> groups = GroupImages(solution.model, kNumCorrelationGroups);
+  const double of_groups = GlobalCorrelationFactor(state, problem, jacobian, covariance, groups,
+                                                   column, solution.options.num_threads);
+  const int num_groups = 1 + *std::max_element(groups.begin(), groups.end());
+  const double factor = num_groups > 1 ? of_groups * StudentFactor(num_groups - 1) : of_groups;
   const double by_motion_s = SigmaByImageErrors(problem, jacobian, covariance, column,
                                                 SharedShiftErrors(solution, linearization));
   return std::hypot(factor * independent_sigma_s, by_motion_s);

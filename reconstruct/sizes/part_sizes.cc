@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "reconstruct/sizes/student_factor.h"
+
 namespace velamap {
 namespace {
 

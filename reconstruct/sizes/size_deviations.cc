@@ -8,10 +8,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include "importer/base/statistics.h"
 #include "reconstruct/problem/prior_cost_functions.h"
+#include "reconstruct/sizes/student_factor.h"
 
 namespace velamap {
 namespace {
@@ -215,12 +215,6 @@ Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double pa
     }
   }
   return deviations;
-}
-
-double StudentFactor(double degrees_of_freedom) {
-  constexpr double kBelowOneSigma = 0.841344746;
-  const boost::math::students_t distribution(degrees_of_freedom);
-  return boost::math::quantile(distribution, kBelowOneSigma);
 }
 
 SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,

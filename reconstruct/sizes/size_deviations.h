@@ -95,8 +95,4 @@ struct SizeAgreement {
 SizeAgreement JudgeDeviations(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                               double print_tolerance);
 
-// Half the width of the interval that holds 68 % of Student's t: 1.84 for one degree of freedom, 1
-// for many.
-double StudentFactor(double degrees_of_freedom);
-
 }  // namespace velamap

@@ -1,0 +1,11 @@
+// How much wider an interval has to be whose sigma comes from few values.
+
+#pragma once
+
+namespace velamap {
+
+// Half the width of the interval that holds 68 % of Student's t: 1.84 for one degree of freedom, 1
+// for many.
+double StudentFactor(double degrees_of_freedom);
+
+}  // namespace velamap
