@@ -35,8 +35,8 @@ house_folder(importer/rotation PUBLIC
 house_folder(importer/lighting PUBLIC
   light_map lighting)
 house_folder(importer/pattern PUBLIC
-  clipped_pixels fit_equations formation_estimate image_formation known_marker lens_bend
-  lighting_fit pattern_fit pattern_picture pattern_problem refined_corners)
+  clipped_pixels fit_equations formation_estimate image_formation known_marker
+  lighting_fit pattern_bend pattern_fit pattern_picture pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
   marker_detector read_again)
 house_folder(importer/track PUBLIC

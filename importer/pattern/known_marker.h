@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/pattern/lens_bend.h"
+#include "importer/pattern/pattern_bend.h"
 
 namespace velamap {
 
@@ -13,7 +13,7 @@ struct KnownMarker {
   // 0 from corner 0 to 3.
   cv::Mat cells;
   double side_mm = 100.0;  // of the black square; ink spreads by a length on the paper
-  LensBend lens_bend{};    // at the place where the marker was found
+  PatternBend lens_bend{};    // at the place where the marker was found
 };
 
 }  // namespace velamap

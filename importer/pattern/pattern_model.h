@@ -9,7 +9,7 @@
 #include "importer/geometry/unit_square_map.h"
 #include "importer/lanes/blurred_cells.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/lens_bend.h"
+#include "importer/pattern/pattern_bend.h"
 
 namespace velamap {
 
@@ -47,7 +47,7 @@ struct PatternModel {
   Eigen::Vector2d center_px;
   double diagonal_px = 0.0;
   double side_mm = 100.0;  // of the black square
-  LensBend lens_bend;
+  PatternBend lens_bend;
   double ink_spread_cells = 0.0;       // how far dark cells reach beyond their outlines
   double edge_shift_blurs = 0.0;       // how far the camera moves them further, in blur sigmas
   double outline_shift_blurs = 0.0;    // how far the outline of the square lies further outside

@@ -44,7 +44,7 @@ class PatternPicture {
     QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
-    LensBend::Coefficients bends_px = model.lens_bend.coefficients_px;
+    PatternBend::Coefficients bends_px = model.lens_bend.coefficients_px;
     num_rounds_ = bends_px.isZero(0) ? 2 : 3;
     bends_px.col(0) += parameters.segment<2>(P::kBendU);
     bends_px.col(3) += parameters.segment<2>(P::kBendV);
@@ -298,7 +298,7 @@ class PatternPicture {
   float direct_share_;  // of the light, which the halo does not scatter
   PatternParameters::Vector parameters_;
   Eigen::Matrix3f square_from_image_;
-  Eigen::Matrix<float, 2, 6> bends_px_;  // of cloth and lens, as in LensBend
+  Eigen::Matrix<float, 2, 6> bends_px_;  // of cloth and lens, as in PatternBend
   int num_rounds_;                       // until the bends are undone to 0.01 px
 };
 

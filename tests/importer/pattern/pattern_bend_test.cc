@@ -1,4 +1,4 @@
-#include "importer/pattern/lens_bend.h"
+#include "importer/pattern/pattern_bend.h"
 
 #include <random>
 
@@ -18,7 +18,7 @@ const Camera kBarrel{
 
 TEST(BendByLens, ALensWithoutDistortionBendsNothing) {
   const Camera pinhole{CameraModel::kPinhole, 1400, 1000, {900, 910, 700, 500}};
-  const LensBend bend = BendByLens(pinhole, {{{100, 100}, {220, 110}, {210, 240}, {95, 230}}});
+  const PatternBend bend = BendByLens(pinhole, {{{100, 100}, {220, 110}, {210, 240}, {95, 230}}});
   EXPECT_TRUE(bend.coefficients_px.isZero(0));
 }
 
@@ -37,7 +37,7 @@ TEST(BendByLens, IsTheDistortionWithinTheCorners) {
         return Eigen::Vector2d(x_px.value_or(none).array() - kImageFromOpenCvPx);
       };
       const QuadCorners corners_px = {project(0, 0), project(1, 0), project(1, 1), project(0, 1)};
-      const LensBend bend = BendByLens(camera, corners_px);
+      const PatternBend bend = BendByLens(camera, corners_px);
       const UnitSquareMap flat(corners_px);
       for (int i = 0; i < 20; ++i) {
         const double u = unit(random), v = unit(random);

@@ -1,4 +1,4 @@
-#include "importer/pattern/lens_bend.h"
+#include "importer/pattern/pattern_bend.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -39,13 +39,28 @@ Eigen::Matrix<double, 6, kNumGridPlaces> CoefficientsByDisplacements() {
 
 }  // namespace
 
-Eigen::Vector2d LensBend::At(double u, double v) const {
+Eigen::Vector2d PatternBend::At(double u, double v) const {
   return coefficients_px * LensTermsAt(u, v);
 }
 
-LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
+PatternBend BendByDisplacements(
+    const std::function<std::optional<Eigen::Vector2d>(const Eigen::Vector2d& uv)>&
+        displacement_px) {
   constexpr double kNegligible_px = 1e-6;
   static const auto kByDisplacements = CoefficientsByDisplacements();
+  Eigen::Matrix<double, 2, kNumGridPlaces> displacements_px;
+  for (int i = 0; i < kNumGridPlaces; ++i) {
+    const auto displacement = displacement_px(GridPlace(i));
+    if (!displacement) return {};
+    displacements_px.col(i) = *displacement;
+  }
+  if (!displacements_px.allFinite() || displacements_px.cwiseAbs().maxCoeff() < kNegligible_px) {
+    return {};
+  }
+  return {displacements_px * kByDisplacements.transpose()};
+}
+
+PatternBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
   const Eigen::Vector2d image_from_opencv = Eigen::Vector2d::Constant(kImageFromOpenCvPx);
   QuadCorners rays;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
@@ -54,18 +69,12 @@ LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
     rays[i] = *ray;
   }
   const UnitSquareMap flat_map(corners_px), ray_map(rays);
-  Eigen::Matrix<double, 2, kNumGridPlaces> displacements_px;
-  for (int i = 0; i < kNumGridPlaces; ++i) {
-    const Eigen::Vector2d uv = GridPlace(i);
+  return BendByDisplacements([&](const Eigen::Vector2d& uv) -> std::optional<Eigen::Vector2d> {
     const Eigen::Vector2d ray = ray_map.ToImage(uv.x(), uv.y());
     const auto x_px = ImageFromCam(camera, ray.homogeneous());
-    if (!x_px) return {};
-    displacements_px.col(i) = *x_px - image_from_opencv - flat_map.ToImage(uv.x(), uv.y());
-  }
-  if (!displacements_px.allFinite() || displacements_px.cwiseAbs().maxCoeff() < kNegligible_px) {
-    return {};
-  }
-  return {displacements_px * kByDisplacements.transpose()};
+    if (!x_px) return std::nullopt;
+    return *x_px - image_from_opencv - flat_map.ToImage(uv.x(), uv.y());
+  });
 }
 
 // The fit follows c0 and c3 with a hump and the other terms in the least-squares sense. An edge
@@ -75,7 +84,7 @@ LensBend BendByLens(const Camera& camera, const QuadCorners& corners_px) {
 //   s h(u) into 0.696 s,  s h(v) into 0.097 s,  t h(u) into 0.490 t,  t h(v) into 0.210 t,
 //
 // and the same holds for edges along v with u and v exchanged.
-QuadCorners CornerShiftsByBend(const LensBend& bend, const QuadCorners& corners_px) {
+QuadCorners CornerShiftsByBend(const PatternBend& bend, const QuadCorners& corners_px) {
   constexpr double kSByU = 0.696, kSByV = 0.097, kTByU = 0.490, kTByV = 0.210;
   const auto& c = bend.coefficients_px;
   Eigen::Matrix2d sides_px;  // along u and v
