@@ -70,11 +70,11 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_errors corner_residuals error_correlation marker_adjustment_options
+  corner_errors corner_residuals error_correlation marker_adjustment_options marker_chords
   marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions
   rolling_shutter scale_bar)
 house_folder(reconstruct/sizes PUBLIC
-  marker_curvature marker_sizes student_factor)
+  bend_evidence bent_corners marker_curvature marker_sizes student_factor)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment camera_cross_validation marker_adjustment)
 house_folder(reconstruct/calibration PUBLIC

@@ -12,6 +12,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/log.h"
+#include "reconstruct/adjust/bent_markers.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
@@ -28,7 +29,6 @@
 #include "reconstruct/problem/corner_residuals.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
-#include "reconstruct/sizes/marker_curvature.h"
 #include "reconstruct/sizes/marker_sizes.h"
 
 namespace velamap {
@@ -117,28 +117,6 @@ void MarkerAdjuster::AdjustWithLooseSizes() {
   }
 }
 
-void MarkerAdjuster::MeasureChords() {
-  // The neighbours show the curvature between markers, not that of the marker itself; and the flat
-  // pattern that is fitted to a bent marker has its corners outside, by up to as much.
-  constexpr double kUnknownShare = 0.5;
-  constexpr double kWorthAWarning = 5e-4;
-  MarkerState state = solution_.state;
-  const ChordSummary chords = SetChords(&state);
-  if (solution_.options.bent_markers) {
-    for (const MarkerBlock& marker : state.markers) {
-      solution_.chord_ratios[marker.marker_id] = marker.chord_ratios;
-    }
-    solution_.weights.chords_as_scale = kUnknownShare * chords.mean_shortening;
-  } else if (chords.mean_shortening >
-             std::max(kWorthAWarning, PrintScaleSigma(solution_.options, solution_.weights))) {
-    solution_.warnings.push_back(fmt::format(
-        "markers that bend with this surface have their corners {:.2f} % closer to each other than "
-        "printed on average, {:.2f} % on marker {}, and the result would be larger by as much; if "
-        "they bend, adjust with the option bent_markers",
-        100 * chords.mean_shortening, 100 * chords.largest_shortening, chords.marker_id));
-  }
-}
-
 void MarkerAdjuster::RejectContradictingSizes() {
   const auto linearization = Linearize(solution_);
   const MarkerSizeVerdict verdict =
@@ -206,7 +184,7 @@ void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solut
 
 void MarkerAdjuster::AdjustToCorners() {
   AdjustWithLooseSizes();
-  MeasureChords();
+  AdjustToBentMarkers(summary_.removed, &solution_);
   RejectContradictingSizes();
   AdjustWithSizes();
 }

@@ -30,11 +30,6 @@ class MarkerAdjuster {
   // calibrates the corners' sigmas by the residuals.
   void AdjustWithLooseSizes();
 
-  // Finds how much shorter than printed the sides of markers are if these bend with a curved
-  // surface. With bent_markers, corrects for it; otherwise warns if the mean exceeds 1 sigma of the
-  // scale of the print.
-  void MeasureChords();
-
   // Drops the size of markers that contradict the others, raises the print tolerance where the
   // sizes scatter more than it explains, and lets each part have a scale of its own where parts
   // disagree.
@@ -44,7 +39,7 @@ class MarkerAdjuster {
   // come to fit, until nothing changes.
   void AdjustWithSizes();
 
-  // The four steps above.
+  // The three steps above, with AdjustToBentMarkers() (bent_markers.h) after the first.
   void AdjustToCorners();
 
   // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the

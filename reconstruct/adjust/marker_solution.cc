@@ -36,8 +36,8 @@ MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
   state.print_scale = solution.state.print_scale;
   for (auto& [part, scale] : state.part_scales) scale = solution.state.part_scales.at(part);
   for (MarkerBlock& marker : state.markers) {
-    const auto known = solution.chord_ratios.find(marker.marker_id);
-    if (known != solution.chord_ratios.end()) marker.chord_ratios = known->second;
+    const auto known = solution.chords.find(marker.marker_id);
+    if (known != solution.chords.end()) marker.chords = known->second;
   }
   return state;
 }

@@ -30,7 +30,7 @@ struct MarkerSolution {
   // print scale.
   MarkerState state;
   MarkerWeights weights;
-  std::map<int, std::array<double, kNumCorners>> chord_ratios;  // by marker id; none: flat
+  std::map<int, MarkerChords> chords;  // by marker id; none: flat
   // Whether the free intrinsics come from SetFreeIntrinsics() and not from the user's options.
   bool has_chosen_intrinsics = false;
   int num_iterations = 0;  // of all minimizations

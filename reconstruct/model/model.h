@@ -24,7 +24,8 @@ struct ModelImage {
   CameraId camera_id = 0;
   std::string name;
   Rigid3 cam_from_world;
-  // By keypoint_idx of the database. Corrected for the rolling shutter, if the adjustment knows it.
+  // By keypoint_idx of the database. Corrected for the rolling shutter and for markers that bend,
+  // if the adjustment knows of them.
   std::vector<Point2D> points2D;
 };
 

@@ -3,6 +3,12 @@
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 
 namespace velamap {
+namespace {
+
+const Choices<BentMarkers> kBentMarkers = {
+    {BentMarkers::kAuto, "auto"}, {BentMarkers::kStiff, "0"}, {BentMarkers::kBent, "1"}};
+
+}  // namespace
 
 FreeIntrinsics FreeIntrinsicsOf(const MarkerAdjustmentOptions& options) {
   if (options.find_camera) return {true, true, true};
@@ -35,9 +41,10 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             FromTo(0, 1)},
            {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
             "the same on parts that the layout calls rigid", FromTo(0, 1)},
-           {"MarkerAdjustment.bent_markers", &options->bent_markers, "0|1",
-            "markers bend with a curved surface, so their sides are the chords of arcs as long as "
-            "printed; 0: they may be stiff"},
+           ChoiceOption("MarkerAdjustment.bent_markers", &options->bent_markers, kBentMarkers,
+                        "1: markers bend with a curved surface, so their sides are the chords of "
+                        "arcs as long as printed; 0: they are stiff; auto: their proportions "
+                        "decide"),
            {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
             "1 sigma of an inset that all corners share (seen too far inside their marker), beyond "
             "what the importer leaves open; widens the scale's sigma",

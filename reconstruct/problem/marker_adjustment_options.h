@@ -7,6 +7,12 @@
 
 namespace velamap {
 
+enum class BentMarkers {
+  kAuto,  // their proportions decide where it matters
+  kStiff,
+  kBent,
+};
+
 struct MarkerAdjustmentOptions {
   // 1 sigma of a corner's coordinate where the detector gives none, px.
   double corner_sigma_px = 0.1;
@@ -32,10 +38,9 @@ struct MarkerAdjustmentOptions {
   // cloth, which bends, and on parts that the layout calls rigid. 0: unknown.
   double cloth_flatness = 0.01;
   double rigid_flatness = 1e-3;
-  // The markers bend with the surface that they are on, so their corners are closer to each other
-  // than printed (marker_curvature.h). Otherwise they are taken to be stiff, with a warning where
-  // that matters.
-  bool bent_markers = false;
+  // Whether the markers bend with the surface that they are on, so that their corners are closer to
+  // each other than printed (marker_curvature.h).
+  BentMarkers bent_markers = BentMarkers::kAuto;
   // 1 sigma of an error that all corners share, px: each is seen this far inside (or outside) its
   // marker along both sides. It widens the scale's sigma according to the size of the markers in
   // the images. It is added (root of the sum of squares) to what the estimated image formation

@@ -121,12 +121,15 @@ class ProblemBuilder {
   void AddPriors(const std::map<CameraId, Camera>& calibration) {
     for (MarkerBlock& marker : state_.markers) {
       const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
-      const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
+      // The corners of a marker that is bent along a diagonal are not in one plane.
+      const double flatness = !marker.chords.IsFlat() ? 0.0
+                              : marker.is_rigid       ? options_.rigid_flatness
+                                                      : options_.cloth_flatness;
       const double side_sigma_m =
           std::hypot(weights_.print_tolerance * marker.length_m, options_.print_resolution_m);
       const MarkerPrior prior{marker.length_m, has_size ? side_sigma_m : 0.0,
                               std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m,
-                              marker.chord_ratios};
+                              marker.chords};
       auto error = std::make_unique<MarkerPriorError>(prior, marker.corners);
       if (error->num_residuals() == 0) continue;
       AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale,

@@ -11,6 +11,7 @@
 
 #include "importer/layout/layout.h"
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/marker_chords.h"
 
 namespace velamap {
 
@@ -20,8 +21,7 @@ struct MarkerBlock {
   std::vector<int> corners;  // the corners, 1..4, that are in the model, ascending
   std::array<double, 3 * kNumCorners> x_in_world{};  // x y z of each of them, m
   double length_m = 0.0;                             // side by the layout
-  // As in MarkerPrior.
-  std::array<double, kNumCorners> chord_ratios = {1.0, 1.0, 1.0, 1.0};
+  MarkerChords chords;
   bool is_rigid = false;
 
   int NumCoordinates() const { return 3 * static_cast<int>(corners.size()); }

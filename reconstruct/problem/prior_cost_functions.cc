@@ -67,7 +67,8 @@ MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<i
   if (prior.side_sigma_m > 0) sides_ = Sides(corners);
   for (const auto& side : sides_) {
     const int corner = corners[static_cast<std::size_t>(side.first)];
-    chords_m_.push_back(prior.length_m * prior.chord_ratios[static_cast<std::size_t>(corner - 1)]);
+    chords_m_.push_back(prior.length_m *
+                        prior.chords.side_ratios[static_cast<std::size_t>(corner - 1)]);
   }
   const bool is_whole = corners.size() == kNumCorners;
   has_diagonals_ = is_whole && prior.diagonals_sigma_m > 0;
@@ -112,6 +113,10 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
   }
   for (int i = 0; i < num_sides; ++i) {
     residuals[i] -= chords_m_[static_cast<std::size_t>(i)] / prior_.side_sigma_m;
+  }
+  if (has_diagonals_) {
+    residuals[num_sides] -=
+        prior_.chords.diagonals_difference * prior_.length_m / prior_.diagonals_sigma_m;
   }
   return true;
 }

@@ -4,13 +4,12 @@
 
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 
 #include <ceres/cost_function.h>
 
-#include "importer/base/ids.h"
+#include "reconstruct/problem/marker_chords.h"
 
 namespace velamap {
 
@@ -20,18 +19,16 @@ struct MarkerPrior {
   double side_sigma_m = 0.0;       // of a side
   double diagonals_sigma_m = 0.0;  // of the difference of the diagonals
   double flatness_sigma_m = 0.0;   // of a corner's distance from the plane of the marker
-  // Distance between the ends of a side divided by its printed length, less than 1 on a curved
-  // surface: of the sides that begin at corners 1 to 4.
-  std::array<double, kNumCorners> chord_ratios = {1.0, 1.0, 1.0, 1.0};
+  MarkerChords chords{};
 };
 
 // Residuals of a marker, divided by 1 + print scale + part scale, against its prior: sides between
 // neighbouring corners minus the length of their chord; for a marker with four corners also the
-// difference of the diagonals, and the distance h of the corners from their best plane (h, -h, h,
-// -h for corners 1 to 4). Without the diagonals a square could become a rhombus, which a single
-// view cannot tell from a tilted square. If the scale multiplied the length instead, a smaller
-// model would have smaller residuals, and scales that are free would shrink it. `corners` are 1..4,
-// ascending. Blocks: marker, print scale, part scale.
+// difference of the diagonals, minus its expectation, and the distance h of the corners from their
+// best plane (h, -h, h, -h for corners 1 to 4). Without the diagonals a square could become a
+// rhombus, which a single view cannot tell from a tilted square. If the scale multiplied the length
+// instead, a smaller model would have smaller residuals, and scales that are free would shrink it.
+// `corners` are 1..4, ascending. Blocks: marker, print scale, part scale.
 class MarkerPriorError : public ceres::CostFunction {
  public:
   MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -15,32 +14,36 @@
 namespace velamap {
 namespace {
 
-// Where a marker with four corners lies, as a piece of the surface: world_from_marker.
-std::optional<Rigid3> FacetOf(const MarkerBlock& marker) {
-  if (marker.corners.size() != kNumCorners) return std::nullopt;
-  std::vector<Eigen::Vector3d> x_in_world;
-  for (int i = 0; i < kNumCorners; ++i) x_in_world.push_back(CornerPosition(marker, i));
-  if (!HasSpread(x_in_world)) return std::nullopt;
-  const auto x_in_marker = CornersInMarker(marker.length_m);
-  return EstimateRigid3({x_in_marker.begin(), x_in_marker.end()}, x_in_world);
-}
-
 // Second derivatives of the height of the surface above a marker, 1/m: xx, xy, yy.
 struct Curvature {
   Eigen::Vector3d second_1_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
-  // Square of the bend of a side along a direction in the plane of the marker, as an angle, less
-  // its variance. The mean of a bent marker's corners lies inside the surface, by the sagittas of
-  // its two sides, so that the places of neighbours show a smaller radius.
-  double SquaredBend(const Eigen::Vector2d& direction, double side_m) const {
+  Eigen::Matrix2d Matrix() const {
+    Eigen::Matrix2d matrix;
+    matrix << second_1_m.x(), second_1_m.y(), second_1_m.y(), second_1_m.z();
+    return matrix;
+  }
+
+  // As in MarkerChords.
+  double DiagonalsDifference(double side_m) const {
+    const double from1_to3 = SquaredBend({side_m, -side_m}, side_m);
+    const double from2_to4 = SquaredBend({side_m, side_m}, side_m);
+    return std::sqrt(2.0) * (from2_to4 - from1_to3) / 24;
+  }
+
+  // Square of the bend of a line on the marker, as an angle, less its variance. The mean of a bent
+  // marker's corners lies inside the surface, by the sagittas of its two sides, so that the places
+  // of neighbours show a smaller radius.
+  double SquaredBend(const Eigen::Vector2d& line_m, double side_m) const {
+    const Eigen::Vector2d direction = line_m.normalized();
     const Eigen::Vector3d by_second(direction.x() * direction.x(),
                                     2 * direction.x() * direction.y(),
                                     direction.y() * direction.y());
     const double value = by_second.dot(second_1_m);
     const double inside_m = (second_1_m.x() + second_1_m.z()) * side_m * side_m / 8;
     const double square = value * value * (1 - 2 * value * inside_m);
-    return side_m * side_m * std::max(0.0, square - by_second.dot(covariance * by_second));
+    return line_m.squaredNorm() * std::max(0.0, square - by_second.dot(covariance * by_second));
   }
 };
 
@@ -89,6 +92,15 @@ std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
 
 }  // namespace
 
+std::optional<Rigid3> WorldFromMarker(const MarkerBlock& marker) {
+  if (marker.corners.size() != kNumCorners) return std::nullopt;
+  std::vector<Eigen::Vector3d> x_in_world;
+  for (int i = 0; i < kNumCorners; ++i) x_in_world.push_back(CornerPosition(marker, i));
+  if (!HasSpread(x_in_world)) return std::nullopt;
+  const auto x_in_marker = CornersInMarker(marker.length_m);
+  return EstimateRigid3({x_in_marker.begin(), x_in_marker.end()}, x_in_world);
+}
+
 ChordSummary SetChords(MarkerState* state) {
   constexpr double kReachSides = 4.0;
   constexpr double kMaxShortening = 0.1;
@@ -96,12 +108,12 @@ ChordSummary SetChords(MarkerState* state) {
   // shortening of such a side, 0.04 %.
   constexpr double kMinBend = 0.1;  // side by radius
   std::vector<std::optional<Rigid3>> facets;
-  for (const MarkerBlock& marker : state->markers) facets.push_back(FacetOf(marker));
+  for (const MarkerBlock& marker : state->markers) facets.push_back(WorldFromMarker(marker));
   ChordSummary summary;
   int num_markers = 0;
   for (std::size_t i = 0; i < state->markers.size(); ++i) {
     MarkerBlock& marker = state->markers[i];
-    marker.chord_ratios.fill(1.0);
+    marker.chords = {};
     ++num_markers;
     if (!facets[i] || marker.is_rigid) continue;
     std::vector<Rigid3> neighbors;
@@ -118,11 +130,15 @@ ChordSummary SetChords(MarkerState* state) {
     for (std::size_t side = 0; side < kNumCorners; ++side) {
       const Eigen::Vector2d along =
           side % 2 == 0 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
-      const double squared_bend = curvature->SquaredBend(along, marker.length_m);
+      const double squared_bend = curvature->SquaredBend(marker.length_m * along, marker.length_m);
       if (squared_bend < kMinBend * kMinBend) continue;
       const double of_side = std::min(kMaxShortening, squared_bend / 24);
-      marker.chord_ratios[side] = 1 - of_side;
+      marker.chords.side_ratios[side] = 1 - of_side;
       shortening += of_side / kNumCorners;
+    }
+    if (shortening > 0) {
+      marker.chords.diagonals_difference = curvature->DiagonalsDifference(marker.length_m);
+      summary.curvatures_1_m[marker.marker_id] = curvature->Matrix();
     }
     summary.mean_shortening += shortening;
     if (shortening > summary.largest_shortening) {

@@ -3,6 +3,12 @@
 
 #pragma once
 
+#include <map>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "importer/geometry/rigid3.h"
 #include "reconstruct/problem/marker_state.h"
 
 namespace velamap {
@@ -11,15 +17,21 @@ struct ChordSummary {
   double mean_shortening = 0.0;     // of all sides, as a fraction
   double largest_shortening = 0.0;  // of a marker's mean side
   int marker_id = 0;                // which has the largest
+  // Of the markers whose sides are shortened, by id: the second derivatives of the height of the
+  // surface above the marker, 1/m, in its frame (x right, y up, z out of the face).
+  std::map<int, Eigen::Matrix2d> curvatures_1_m;
 };
 
-// Sets the chord ratios of all markers, 1 - (a kappa)^2 / 24 for an arc of the printed length a
-// with the normal curvature kappa along the side. The curvature of a marker follows from the places
-// and tilts of its neighbours on the same part within four sides, which are tilted by less than 50
-// degrees relative to it, by a least-squares fit, and its variance is subtracted from its square.
-// Sides stay as printed where a kappa is below 0.1, where there are no neighbours, on parts that
-// the layout calls rigid, whose faces may be flat, and where the neighbours contradict one smooth
-// surface, as at the edge between two walls.
+// The pose of a marker by its corners. Nothing unless it has four that span a plane.
+std::optional<Rigid3> WorldFromMarker(const MarkerBlock& marker);
+
+// Sets the chords of all markers: their ratio is 1 - (a kappa)^2 / 24 for an arc of the printed
+// length a with the normal curvature kappa along the side. The curvature of a marker follows from
+// the places and tilts of its neighbours on the same part within four sides, which are tilted by
+// less than 50 degrees relative to it, by a least-squares fit, and its variance is subtracted from
+// its square. Sides stay as printed where a kappa is below 0.1, where there are no neighbours, on
+// parts that the layout calls rigid, whose faces may be flat, and where the neighbours contradict
+// one smooth surface, as at the edge between two walls.
 ChordSummary SetChords(MarkerState* state);
 
 }  // namespace velamap

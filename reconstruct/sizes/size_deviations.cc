@@ -172,7 +172,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
       longest_m = std::max(longest_m, side.norm());
       const int corner = marker.corners[static_cast<std::size_t>(a)];
       const double chord_m =
-          marker.length_m * marker.chord_ratios[static_cast<std::size_t>(corner - 1)];
+          marker.length_m * marker.chords.side_ratios[static_cast<std::size_t>(corner - 1)];
       const double weight = 1.0 / (size.num_sides * chord_m);
       size.ratio += weight * side.norm();
       gradient.segment<3>(3 * a) -= weight * side.normalized();

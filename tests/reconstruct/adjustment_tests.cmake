@@ -14,6 +14,8 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     problem/marker_cost_functions_test.cc
     problem/marker_problem_test.cc
     sizes/few_markers_test.cc
+    sizes/bend_evidence_test.cc
+    sizes/bent_corners_test.cc
     sizes/curved_scene_test.cc
     sizes/marker_curvature_test.cc
     sizes/marker_sizes_test.cc

@@ -178,6 +178,19 @@ TEST(MarkerPriorError, KnowsSidesAndFlatness) {
   EXPECT_NEAR(std::abs(residuals[5]), h / 1.02 / 2e-3, 1e-12);
 }
 
+TEST(MarkerPriorError, ExpectsTheDiagonalsOfABentMarker) {
+  const std::vector<double> marker = {0, 0, 0, 0.1, 0, 0, 0.101, 0.1, 0, 0, 0.1, 0};
+  const double difference_m = std::hypot(0.101, 0.1) - std::hypot(0.1, 0.1), print_scale = 0.0;
+  const double* blocks[] = {marker.data(), &print_scale, &print_scale};
+  MarkerPrior prior{0.1, 0, 3e-3, 0};
+  double residual = 0.0;
+  ASSERT_TRUE(MarkerPriorError(prior, {1, 2, 3, 4}).Evaluate(blocks, &residual, nullptr));
+  EXPECT_NEAR(residual, difference_m / 3e-3, 1e-12);
+  prior.chords.diagonals_difference = difference_m / 0.1;
+  ASSERT_TRUE(MarkerPriorError(prior, {1, 2, 3, 4}).Evaluate(blocks, &residual, nullptr));
+  EXPECT_NEAR(residual, 0, 1e-12);
+}
+
 TEST(MarkerPriorError, RhombusIsNoSquare) {
   // Sides of 0.1, sheared by an angle of 0.02 rad.
   const double x = 0.1 * std::sin(0.02), y = 0.1 * std::cos(0.02);

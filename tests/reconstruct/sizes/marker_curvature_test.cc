@@ -57,10 +57,10 @@ TEST(MarkerCurvature, SidesAroundACylinderAreChords) {
     MarkerState state = MarkersOn(Cylinder(kRadius_m), noise_m);
     const ChordSummary summary = SetChords(&state);
     for (const MarkerBlock& marker : state.markers) {
-      EXPECT_NEAR(marker.chord_ratios[0], Chord(kRadius_m), 3e-4) << marker.marker_id;
-      EXPECT_NEAR(marker.chord_ratios[2], Chord(kRadius_m), 3e-4) << marker.marker_id;
-      EXPECT_NEAR(marker.chord_ratios[1], 1, 5e-5) << marker.marker_id;
-      EXPECT_NEAR(marker.chord_ratios[3], 1, 5e-5) << marker.marker_id;
+      EXPECT_NEAR(marker.chords.side_ratios[0], Chord(kRadius_m), 3e-4) << marker.marker_id;
+      EXPECT_NEAR(marker.chords.side_ratios[2], Chord(kRadius_m), 3e-4) << marker.marker_id;
+      EXPECT_NEAR(marker.chords.side_ratios[1], 1, 5e-5) << marker.marker_id;
+      EXPECT_NEAR(marker.chords.side_ratios[3], 1, 5e-5) << marker.marker_id;
     }
     EXPECT_NEAR(summary.mean_shortening, 0.5 * (1 - Chord(kRadius_m)), 1e-4);
   }
@@ -72,8 +72,23 @@ TEST(MarkerCurvature, FewMarkersAroundACylinderShowItsCurvature) {
   MarkerState state = MarkersOn(Cylinder(radius_m), 2e-4);
   SetChords(&state);
   for (const MarkerBlock& marker : state.markers) {
-    EXPECT_NEAR(marker.chord_ratios[0], Chord(radius_m), 3e-4) << marker.marker_id;
-    EXPECT_NEAR(marker.chord_ratios[1], 1, 1e-4) << marker.marker_id;
+    EXPECT_NEAR(marker.chords.side_ratios[0], Chord(radius_m), 3e-4) << marker.marker_id;
+    EXPECT_NEAR(marker.chords.side_ratios[1], 1, 1e-4) << marker.marker_id;
+  }
+}
+
+TEST(MarkerCurvature, DiagonalsAroundACylinderAreChords) {
+  const Sheet cylinder = Cylinder(0.4);
+  MarkerState state = MarkersOn([&](double u, double v) {
+    const Eigen::Vector2d turned = Eigen::Rotation2Dd(0.6) * Eigen::Vector2d(u, v);
+    return cylinder(turned.x(), turned.y());
+  });
+  SetChords(&state);
+  for (const MarkerBlock& marker : state.markers) {
+    const double from1_to3 = (CornerPosition(marker, 2) - CornerPosition(marker, 0)).norm();
+    const double from2_to4 = (CornerPosition(marker, 3) - CornerPosition(marker, 1)).norm();
+    EXPECT_NEAR(marker.chords.diagonals_difference, (from1_to3 - from2_to4) / kSide_m, 3e-4);
+    EXPECT_GT(std::abs(marker.chords.diagonals_difference), 2e-3);
   }
 }
 
@@ -104,7 +119,7 @@ TEST(MarkerCurvature, RigidPartsAndMarkersAloneStayAsPrinted) {
   state.markers.resize(1);
   state.markers[0].is_rigid = false;
   EXPECT_EQ(SetChords(&state).mean_shortening, 0);
-  EXPECT_EQ(state.markers[0].chord_ratios[0], 1);
+  EXPECT_EQ(state.markers[0].chords.side_ratios[0], 1);
 }
 
 }  // namespace

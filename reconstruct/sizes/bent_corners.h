@@ -1,0 +1,32 @@
+// Corners of markers that bend with a curved surface: where an image shows them, and where the fit
+// of a flat pattern (importer/pattern/pattern_fit.h) finds them instead. That fit follows a bend as
+// a whole, but not that its middle is nearer to the camera, or farther, than its ends.
+
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/pattern/pattern_bend.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/problem/corner_errors.h"
+#include "reconstruct/problem/marker_state.h"
+
+namespace velamap {
+
+// By how much the fit of a flat pattern misplaces the corners of a marker that bends with a surface
+// of constant curvature, px. `curvature_1_m` is as in ChordSummary. Zero where a part of the marker
+// is behind the camera.
+QuadCorners CornerShiftsBySurface(const Camera& camera, const Rigid3& cam_from_marker,
+                                  double length_m, const Eigen::Matrix2d& curvature_1_m);
+
+// Moves the image points of the markers in `curvatures_1_m`, by marker id, to where a fit that
+// knows how they bend would have found them; also those that `removed` lists. Points whose corner
+// has no sigma in `errors` were not fitted and stay. All points of the model are corners.
+void CorrectForBentMarkers(const std::map<int, Eigen::Matrix2d>& curvatures_1_m,
+                           const MarkerState& state, const CornerErrors& errors,
+                           const std::vector<RemovedObservation>& removed, Model* model);
+
+}  // namespace velamap
