@@ -19,7 +19,6 @@
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/adjust/found_cameras.h"
 #include "reconstruct/adjust/rolling_shutter_choice.h"
-#include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/covariance_update.h"
@@ -30,6 +29,7 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/sizes/marker_sizes.h"
+#include "reconstruct/sizes/scale_bar_verdict.h"
 
 namespace velamap {
 namespace {

@@ -15,6 +15,7 @@
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/corner_residuals.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/problem/marker_chords.h"
 #include "reconstruct/problem/marker_problem.h"
 #include "reconstruct/problem/normal_equations.h"
 

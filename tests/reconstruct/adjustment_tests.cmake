@@ -20,11 +20,11 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     sizes/marker_curvature_test.cc
     sizes/marker_sizes_test.cc
     sizes/part_sizes_test.cc
+    sizes/scale_bar_verdict_test.cc
     sizes/size_deviations_test.cc
     problem/error_correlation_test.cc
     problem/marker_uncertainty_test.cc
     problem/scale_bar_test.cc
-    adjust/scale_bar_verdict_test.cc
     scene_model.cc
     solve/schur_complement_test.cc
     colmap/warm_start_test.cc

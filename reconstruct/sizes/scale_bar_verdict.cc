@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/scale_bar_verdict.h"
+#include "reconstruct/sizes/scale_bar_verdict.h"
 #include "importer/geometry/units.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/scale_bar_verdict.h"
+#include "reconstruct/sizes/scale_bar_verdict.h"
 
 #include <algorithm>
 #include <array>
