@@ -18,8 +18,11 @@ BentMarkers DecideByProportions(const ChordSummary& chords, const MarkerSolution
   const auto linearization = Linearize(solution);
   const BendEvidence evidence = FindBendEvidence(linearization->state, linearization->covariance,
                                                  chords.curvatures_1_m, solution.options);
-  LogDebug("markers on the curved surface bend by {:.2f} +- {:.2f} of its curvature",
-           evidence.share, evidence.sigma);
+  // The search for a camera tries many times.
+  LogMessage(solution.options.find_camera ? LogLevel::kDebug : LogLevel::kInfo,
+             "markers follow {:.2f} +- {:.2f} of the curvature of their surface, all of which "
+             "shortens their sides by {:.2f} % on average",
+             evidence.share, evidence.sigma, 100 * chords.mean_shortening);
   const double from_middle = evidence.share - 0.5;
   if (!(std::abs(from_middle) > kMinSigmas * evidence.sigma)) return BentMarkers::kAuto;
   return from_middle > 0 ? BentMarkers::kBent : BentMarkers::kStiff;
