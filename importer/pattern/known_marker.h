@@ -12,8 +12,8 @@ struct KnownMarker {
   // 8-bit, square, with the black border, zero for black. Row 0 runs from corner 0 to 1 and column
   // 0 from corner 0 to 3.
   cv::Mat cells;
-  double side_mm = 100.0;  // of the black square; ink spreads by a length on the paper
-  PatternBend lens_bend{};    // at the place where the marker was found
+  double side_mm = 100.0;   // of the black square; ink spreads by a length on the paper
+  PatternBend lens_bend{};  // at the place where the marker was found
 };
 
 }  // namespace velamap

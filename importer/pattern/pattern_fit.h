@@ -8,10 +8,10 @@
 //   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v + lens(u, v)
 //
 // and becomes grey values by the image formation (image_formation.h). H is the homography of
-// the four corners; the bends (px) are due to cloth, and lens(u, v) to the lens (pattern_bend.h); a_i
-// and b_j are the unit steps of column i and row j blurred by a Gaussian (px; separate widths along
-// u and v model motion blur as well). A quiet zone surrounds the black square; beyond its width,
-// which is fitted for each side, lie the surroundings as the image shows them.
+// the four corners; the bends (px) are due to cloth, and lens(u, v) to the lens (pattern_bend.h);
+// a_i and b_j are the unit steps of column i and row j blurred by a Gaussian (px; separate widths
+// along u and v model motion blur as well). A quiet zone surrounds the black square; beyond its
+// width, which is fitted for each side, lie the surroundings as the image shows them.
 
 #pragma once
 
