@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "importer/formation/sample_bend.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/pattern_picture.h"
 
@@ -90,6 +91,7 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
   constexpr float kReachOfEdgesPx = 16.0f;
   FittedSample fitted;
   fitted.gray = sample.gray;
+  fitted.may_bend = sample.may_bend;
   auto problem =
       MakePatternProblem(sample.gray, sample.corners_px, sample.marker, formation, &fitted.minimum);
   if (!problem || !FitPatternInPasses(&*problem, &fitted.minimum)) return std::nullopt;
@@ -125,17 +127,21 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
     light = formation.tone().Decode(before.Encode(light));
   }
   const P::Vector start = sample->minimum.parameters;
+  const PatternBend start_bend = problem.model.lens_bend;
   const double rms_before = RmsOf(sample->residuals);
-  const bool is_fitted =
-      HasClippedPixels(sample->gray, problem.box)
-          ? RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
-                                 &sample->minimum)
-          : RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum);
+  bool is_fitted = HasClippedPixels(sample->gray, problem.box)
+                       ? RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx,
+                                              &problem, &sample->minimum)
+                       : RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum);
+  if (is_fitted && sample->may_bend) is_fitted = FollowBend(kMaxPixels, kTolerancePx, sample);
   sample->minimum.equations = {};  // large, and samples are copied
   sample->residuals.clear();
   if (is_fitted && !HasRunAway(*sample)) sample->residuals = ResidualsOf(*sample, formation);
   if (!(RmsOf(sample->residuals) < kDiverged * rms_before)) sample->residuals.clear();
-  if (sample->residuals.empty()) sample->minimum.parameters = start;
+  if (sample->residuals.empty()) {
+    sample->minimum.parameters = start;
+    problem.model.lens_bend = start_bend;
+  }
 }
 
 }  // namespace velamap

@@ -18,6 +18,7 @@ struct FormationSample {
   cv::Mat gray;            // 8 bit: the marker with half a side around it, dark cells dark
   QuadCorners corners_px;  // OpenCV's pixel frame of `gray`, to a pixel
   KnownMarker marker;
+  bool may_bend = false;  // with a curved surface, or by an unknown lens (sample_bend.h)
 };
 
 struct SamplePlace {
@@ -28,6 +29,7 @@ struct SamplePlace {
 // A sample with its fit. Refers to the image formation that it was fitted with.
 struct FittedSample {
   cv::Mat gray;
+  bool may_bend = false;
   PatternProblem problem;
   PatternMinimum minimum;
   std::vector<SamplePlace> places;  // of the pixels near edges

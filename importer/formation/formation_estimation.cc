@@ -10,6 +10,7 @@
 #include "importer/base/statistics.h"
 #include "importer/formation/balanced_edges.h"
 #include "importer/formation/formation_problem.h"
+#include "importer/formation/sample_bend.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/lighting_fit.h"
 
@@ -199,8 +200,14 @@ FormationEstimate EstimateOnce(const std::vector<FormationSample>& samples, bool
 
 }  // namespace
 
-FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
+FormationEstimate EstimateFormation(std::vector<FormationSample> samples, bool is_inverted,
                                     const FitWorkers& workers) {
+  ImageFormationParameters linear;
+  linear.is_inverted = is_inverted;
+  if (ShowBend(SomeOf(samples), ImageFormation(linear), workers)) {
+    LogDebug("the markers bend, which the estimate of camera and print follows");
+    for (FormationSample& sample : samples) sample.may_bend = true;
+  }
   FormationEstimate estimate = EstimateOnce(samples, is_inverted, workers);
   if (estimate.num_samples == 0) return estimate;
   const std::vector<FormationSample> even = WithEvenLight(samples, estimate.parameters, workers);

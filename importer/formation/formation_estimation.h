@@ -20,11 +20,12 @@ constexpr std::size_t kMinFormationSamples = 2;
 // samples are fitted again after each step. Some of the samples are fitted from several starting
 // gammas and amounts of sharpening; then all samples take a few steps. The shifts of edges and of
 // outlines then follow the places of inner edges (balanced_edges.h), and pixels at the corners of
-// outlines are weighted by their residuals (OutlineCornerWeight()). `is_inverted`: the samples hold
+// outlines are weighted by their residuals (OutlineCornerWeight()). Where markers bend, the fits of
+// the samples follow them (sample_bend.h). `is_inverted`: the samples hold
 // 255 minus the recorded grey values. The number of threads does not change the result. If fewer
 // than kMinFormationSamples can be fitted, the parameters are the defaults, with the inset that an
 // unknown camera may cause.
-FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
+FormationEstimate EstimateFormation(std::vector<FormationSample> samples, bool is_inverted,
                                     const FitWorkers& workers = {});
 
 }  // namespace velamap

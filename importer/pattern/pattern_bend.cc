@@ -10,17 +10,8 @@ namespace {
 
 constexpr int kGridPlacesASide = 5;
 constexpr int kNumGridPlaces = kGridPlacesASide * kGridPlacesASide;
-using LensTerms = Eigen::Matrix<double, 6, 1>;
 
 double Hump(double t) { return 4 * t * (1 - t); }
-
-LensTerms LensTermsAt(double u, double v) {
-  const double tilt_u = 2 * u - 1, tilt_v = 2 * v - 1;
-  LensTerms terms;
-  terms << Hump(u) * Eigen::Vector3d(1, tilt_v, tilt_u),
-      Hump(v) * Eigen::Vector3d(1, tilt_u, tilt_v);
-  return terms;
-}
 
 Eigen::Vector2d GridPlace(int idx) {
   constexpr double kStep = 1.0 / (kGridPlacesASide - 1);
@@ -31,7 +22,7 @@ Eigen::Vector2d GridPlace(int idx) {
 Eigen::Matrix<double, 6, kNumGridPlaces> CoefficientsByDisplacements() {
   Eigen::Matrix<double, kNumGridPlaces, 6> terms;
   for (int i = 0; i < kNumGridPlaces; ++i) {
-    terms.row(i) = LensTermsAt(GridPlace(i).x(), GridPlace(i).y()).transpose();
+    terms.row(i) = PatternBend::TermsAt(GridPlace(i).x(), GridPlace(i).y()).transpose();
   }
   return terms.colPivHouseholderQr().solve(
       Eigen::Matrix<double, kNumGridPlaces, kNumGridPlaces>::Identity());
@@ -39,8 +30,16 @@ Eigen::Matrix<double, 6, kNumGridPlaces> CoefficientsByDisplacements() {
 
 }  // namespace
 
+PatternBend::Terms PatternBend::TermsAt(double u, double v) {
+  const double tilt_u = 2 * u - 1, tilt_v = 2 * v - 1;
+  Terms terms;
+  terms << Hump(u) * Eigen::Vector3d(1, tilt_v, tilt_u),
+      Hump(v) * Eigen::Vector3d(1, tilt_u, tilt_v);
+  return terms;
+}
+
 Eigen::Vector2d PatternBend::At(double u, double v) const {
-  return coefficients_px * LensTermsAt(u, v);
+  return coefficients_px * TermsAt(u, v);
 }
 
 PatternBend BendByDisplacements(

@@ -23,8 +23,11 @@ namespace velamap {
 // with h(t) = 4t (1 - t).
 struct PatternBend {
   using Coefficients = Eigen::Matrix<double, 2, 6>;
+  using Terms = Eigen::Matrix<double, 6, 1>;
 
   Coefficients coefficients_px = Coefficients::Zero();  // c0 to c5
+
+  static Terms TermsAt(double u, double v);  // the factors of c0 to c5
 
   Eigen::Vector2d At(double u, double v) const;
 };

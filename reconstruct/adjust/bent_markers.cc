@@ -41,8 +41,8 @@ void WarnOfBentMarkers(const ChordSummary& chords, MarkerSolution* solution) {
 
 void AdjustToBentMarkers(const std::vector<RemovedObservation>& removed, MarkerSolution* solution) {
   // Of the shortening: neighbours show the curvature between markers, not that of the marker, and
-  // the importer takes a part of the bend for what camera and printer do to edges.
-  constexpr double kUnknownShare = 0.5;
+  // the correction of the corners is not exact.
+  constexpr double kUnknownShare = 0.25;
   constexpr double kMatters = 5e-4;
   BentMarkers bent_markers = solution->options.bent_markers;
   if (bent_markers == BentMarkers::kStiff) return;

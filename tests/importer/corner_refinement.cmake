@@ -10,6 +10,7 @@ velamap_test(
     refine/edge_fit_test.cc
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
+    formation/sample_bend_test.cc
     formation/formation_sampling_test.cc
     formation/formation_scenes.cc
     formation/printed_ink_test.cc

@@ -64,7 +64,7 @@ TEST_F(CurvedScene, ShowsWhetherItsMarkersBend) {
     SCOPED_TRACE(testing::Message() << markers_are_stiff << ' ' << turn_rad);
     Bend(0.2, markers_are_stiff, turn_rad);
     const MarkerAdjustmentSummary summary = Adjust();
-    EXPECT_LT(summary.uncertainty.relative_scale_sigma, 3e-3);
+    EXPECT_LT(summary.uncertainty.relative_scale_sigma, 2e-3);
     EXPECT_LT(std::abs(ScaleError()), 5e-4);
     EXPECT_THAT(summary.warnings, testing::IsEmpty());
   }
