@@ -146,6 +146,9 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
 
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization) {
+  // Codecs predict a frame from others as if all its rows had moved alike. On rendered walls, H.264
+  // makes the time 0.1 to 0.9 % shorter, 0.7 % RMS; without loss it is right to 0.1 %.
+  constexpr double kOfTime = 0.007;
   const auto& [state, problem, jacobian, covariance] = linearization;
   const int column = GlobalColumn(problem, &state.rolling_shutter_s);
   const std::vector<int> groups = GroupImages(solution.model, kNumCorrelationGroups);
@@ -155,7 +158,7 @@ double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
   const double factor = num_groups > 1 ? of_groups * StudentFactor(num_groups - 1) : of_groups;
   const double by_motion_s = SigmaByImageErrors(problem, jacobian, covariance, column,
                                                 SharedShiftErrors(solution, linearization));
-  return std::hypot(factor * independent_sigma_s, by_motion_s);
+  return std::hypot(factor * independent_sigma_s, by_motion_s, kOfTime * state.rolling_shutter_s);
 }
 
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {
