@@ -66,7 +66,8 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
 // larger than `independent_sigma_s`, the sigma by independent errors of the corners, because cloth
 // that moves between two frames moves its markers as a rolling shutter does, because all corners of
 // an image share errors of their velocity, because the scatter of a few groups of images, which
-// shows common errors, is itself uncertain (Student's t), and because compression shortens the time.
+// shows common errors, is itself uncertain (Student's t), and because compression shortens the
+// time.
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization);
 
