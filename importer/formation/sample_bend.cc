@@ -121,7 +121,7 @@ bool StepTowardsBend(int max_pixels, FittedSample* sample) {
 
 bool ShowBend(const std::vector<FormationSample>& samples, const ImageFormation& formation,
               const FitWorkers& workers) {
-  constexpr double kMinOfSide = 0.01, kMin_px = 0.25, kMinShare = 0.25;
+  constexpr double kMinOfSide = 0.02, kMin_px = 0.25, kMinShare = 0.25;
   std::vector<char> is_bent(samples.size());
   ParallelFor(samples.size(), workers.num_threads, [&](std::size_t i) {
     const auto fitted = FitSample(samples[i], formation);

@@ -11,7 +11,7 @@
 
 namespace velamap {
 
-// Whether more than a quarter of the samples bend by more than 1 % of a side and a quarter of a
+// Whether more than a quarter of the samples bend by more than 2 % of a side and a quarter of a
 // pixel. A bend hardly depends on the image formation that it is found with.
 bool ShowBend(const std::vector<FormationSample>& samples, const ImageFormation& formation,
               const FitWorkers& workers);
