@@ -11,6 +11,9 @@
 #include "exporters/scale/round_number.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/base/statistics.h"
+#include "reconstruct/problem/marker_chords.h"
+#include "reconstruct/problem/marker_state.h"
+#include "reconstruct/sizes/marker_curvature.h"
 
 namespace velamap {
 namespace {
@@ -35,6 +38,20 @@ std::vector<MeasuredMarkerSides> MeasureForShape(const MarkerShape& shape, const
     for (double& side : marker.sides) side /= units_per_m;
   }
   return markers;
+}
+
+// Sides along the bend instead of their chords. `model` is metric.
+void MeasureAlongBends(const Model& model, const Layout& layout,
+                       std::vector<MeasuredMarkerSides>* markers) {
+  MarkerState state = MakeMarkerState(model, layout);
+  SetChords(&state);
+  std::map<int, MarkerChords> chords;
+  for (const MarkerBlock& marker : state.markers) chords[marker.marker_id] = marker.chords;
+  for (MeasuredMarkerSides& marker : *markers) {
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      marker.sides[i] /= chords[marker.marker_id].side_ratios[i];
+    }
+  }
 }
 
 // Markers that degenerate to a point have no scale.
@@ -229,6 +246,10 @@ ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Mode
                                uncertainty->apparent_inset_sigma_px};
   }
   std::vector<MeasuredMarkerSides> measured = MeasureForShape(shape, layout, model, uncertainty);
+  if (model != nullptr && uncertainty != nullptr && uncertainty->markers_bend) {
+    audit.markers_bend = true;
+    MeasureAlongBends(*model, layout, &measured);
+  }
   RemoveDegenerateMarkers(&measured);
   audit.markers = ScalesOf(measured, layout);
   audit.spread = SpreadOf(audit.markers);

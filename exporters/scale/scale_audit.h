@@ -23,7 +23,7 @@ struct MarkerScale {
   int marker_id = 0;
   std::string part;
   double length_m = 0.0;  // printed side in the layout
-  double side_m = 0.0;    // mean of the four sides from the images
+  double side_m = 0.0;    // mean of the four sides from the images; of bent markers, along the bend
   double deviation = 0.0;
   std::optional<double> sigma;    // of the deviation, from the noise of the image points
   std::optional<double> side_px;  // size in the images
@@ -49,6 +49,7 @@ struct HistogramBin {
 };
 
 struct ScaleAudit {
+  bool markers_bend = false;         // AdjustmentUncertainty::markers_bend
   std::vector<MarkerScale> markers;  // by id
   // Mean over the markers that agree, and its sigma from their noise and scatter.
   double deviation = 0.0;
@@ -78,7 +79,7 @@ struct ScaleAudit {
 // `model`, at any scale, is the source of the shape; it gives the markers their sigmas and sizes in
 // the images. With its `uncertainty`, the sides are measured again from the image points alone with
 // fixed cameras, because the adjustment has pulled the markers to their printed size, and distances
-// get sigmas.
+// get sigmas. If it says that markers bend, their sides are measured along the bend.
 ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Model* model = nullptr,
                       const AdjustmentUncertainty* uncertainty = nullptr);
 

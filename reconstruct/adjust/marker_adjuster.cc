@@ -50,6 +50,7 @@ AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
   AdjustmentUncertainty uncertainty =
       MakeUncertainty(solution.options, linearization.state, solution.weights,
                       linearization.problem, linearization.covariance);
+  uncertainty.markers_bend = !solution.chords.empty();
   if (solution.weights.scale_bars.empty()) {
     uncertainty.print_scale_sigma =
         std::min(solution.options.common_print_tolerance, uncertainty.relative_scale_sigma);

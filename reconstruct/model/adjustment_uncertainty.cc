@@ -18,10 +18,11 @@ namespace velamap {
 namespace {
 
 // Layout of the file: magic, version, eight doubles, CalibrationEvidence, points, blocks, factor,
-// signs, hash of the model (from version 5 on), print_scale_sigma (from version 6 on);
-// little-endian.
+// signs, hash of the model (from version 5 on), print_scale_sigma (from version 6 on), markers_bend
+// as 8 bytes (from version 7 on); little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 6, kFirstVersionWithHash = 5, kOldestVersion = 4;
+constexpr std::uint32_t kVersion = 7, kFirstVersionWithPrintScale = 6, kFirstVersionWithHash = 5,
+                        kOldestVersion = 4;
 
 // In the order of the file.
 constexpr std::array<double AdjustmentUncertainty::*, 8> kMembers = {
@@ -169,6 +170,7 @@ void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, 
   WriteMatrix(points.signs, out);
   Write(HashOfPoints(model), out);
   Write(uncertainty.print_scale_sigma, out);
+  WriteCount(uncertainty.markers_bend ? 1 : 0, out);
 }
 
 }  // namespace
@@ -205,7 +207,10 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   if (signs.cols() != 1) reader.Fail("is broken");
   points.signs = signs;
   if (version >= kFirstVersionWithHash) uncertainty.model_hash = reader.Read<std::uint64_t>();
-  if (version == kVersion) uncertainty.print_scale_sigma = reader.Read<double>();
+  if (version >= kFirstVersionWithPrintScale) {
+    uncertainty.print_scale_sigma = reader.Read<double>();
+  }
+  if (version == kVersion) uncertainty.markers_bend = reader.Read<std::uint64_t>() != 0;
   reader.ExpectEnd();
   CheckShapes(points, reader);
   return uncertainty;

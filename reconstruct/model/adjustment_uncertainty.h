@@ -43,6 +43,8 @@ struct AdjustmentUncertainty {
   // Time from the first row of an image to the last. A sigma of 0: not estimated.
   double rolling_shutter_s = 0.0;
   double rolling_shutter_sigma_s = 0.0;
+  // The markers bend with a curved surface, so their sides are chords (SetChords()).
+  bool markers_bend = false;
   CalibrationEvidence calibration;
   std::uint64_t model_hash = 0;  // of the points of its model, where a file says it; else 0
 };

@@ -59,8 +59,8 @@ void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
     out << ')';
   }
   out << fmt::format(
-      "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",
-      shape.metrics.side_error_mm.mean);
+      "; the sides of the markers{} differ from their printed length by {:.2g} mm on average\n",
+      shape.audit.markers_bend ? ", which bend," : "", shape.metrics.side_error_mm.mean);
 }
 
 std::string RollingShutterText(const AdjustmentResult& adjustment) {

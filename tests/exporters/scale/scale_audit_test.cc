@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "exporters/scale/metric_shape.h"
+#include "reconstruct/geometry/marker_pose.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
@@ -261,6 +262,52 @@ TEST(ScaleAudit, WithAnUncertaintyTheImagesAreAsked) {
   EXPECT_THAT(Disagreeing(audit), ElementsAre(4));
   EXPECT_NEAR(audit.markers[3].deviation, 0.02, 1e-3);
   EXPECT_EQ(audit.apparent_inset_px->sigma, 0.01);
+}
+
+// Markers of 100 mm around a cylinder with a radius of 250 mm, in the images of ExampleModel().
+Model BentModel() {
+  constexpr double kRadius_m = 0.25;
+  constexpr int kColumns = 4, kRows = 3;
+  Model model = ExampleModel();
+  model.points3D.clear();
+  for (ModelImage& image : model.images) image.points2D.clear();
+  for (int marker_id = 0; marker_id < kColumns * kRows; ++marker_id) {
+    const Eigen::Vector3d middle_m(0.14 * (marker_id % kColumns - 1.5),
+                                   0.14 * (marker_id / kColumns - 1), 0);
+    int corner = 0;
+    for (const Eigen::Vector3d& x_in_marker : CornersInMarker(0.1)) {
+      const Eigen::Vector3d flat_m = middle_m + x_in_marker;
+      const double angle = flat_m.x() / kRadius_m;
+      const Point3DId id = Point3DIdFromCorner({marker_id, ++corner});
+      Point3D& point = model.points3D[id];
+      point.x_in_world = {kRadius_m * std::sin(angle), flat_m.y(),
+                          kRadius_m * (std::cos(angle) - 1)};
+      for (ModelImage& image : model.images) {
+        const auto x_px = ImageFromCam(model.cameras.at(image.camera_id),
+                                       image.cam_from_world * point.x_in_world);
+        point.track.push_back({image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
+        image.points2D.push_back({x_px.value(), id});
+      }
+    }
+  }
+  return model;
+}
+
+// Their horizontal sides are 0.67 % shorter than printed.
+TEST(ScaleAudit, BentMarkersHaveTheirSizeAlongTheBend) {
+  const Model model = BentModel();
+  const Layout layout = MakeLayout("DICT_4X4_250", 0.1);
+  const MarkerShape shape = ShapeFromModel(model, layout);
+  AdjustmentUncertainty uncertainty = ExampleUncertainty(model);
+  uncertainty.apparent_inset_px = 0.0;
+  const ScaleAudit stiff = AuditScale(shape, layout, &model, &uncertainty);
+  EXPECT_NEAR(stiff.deviation, 0.0033, 3e-4);
+  EXPECT_FALSE(stiff.markers_bend);
+  uncertainty.markers_bend = true;
+  const ScaleAudit bent = AuditScale(shape, layout, &model, &uncertainty);
+  EXPECT_NEAR(bent.deviation, 0.0, 3e-4);
+  EXPECT_NEAR(*bent.x_over_y, 1.0, 6e-4);
+  EXPECT_TRUE(bent.markers_bend);
 }
 
 TEST(ScaleAudit, ASpreadOfThePrintIsFoundInTheShape) {

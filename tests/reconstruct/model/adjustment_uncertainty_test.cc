@@ -24,6 +24,7 @@ class UncertaintyFile : public testing::Test {
     uncertainty_.points.signs = Eigen::Vector2d(1, -1);
     uncertainty_.relative_scale_sigma = 1e-3;
     uncertainty_.print_scale_sigma = 8e-4;
+    uncertainty_.markers_bend = true;
     uncertainty_.variance_factor = 1.7;
     uncertainty_.apparent_inset_px = -0.01;
     uncertainty_.apparent_inset_sigma_px = 0.02;
@@ -54,7 +55,7 @@ class UncertaintyFile : public testing::Test {
     WriteBytes(bytes);
   }
 
-  void WriteVersionWithoutHash() const { WriteEarlierVersion(4, 2); }
+  void WriteVersionWithoutHash() const { WriteEarlierVersion(4, 3); }
 
   TempDir dir_;
   AdjustmentUncertainty uncertainty_;
@@ -71,6 +72,7 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(read.points.signs, uncertainty_.points.signs);
   EXPECT_EQ(read.relative_scale_sigma, uncertainty_.relative_scale_sigma);
   EXPECT_EQ(read.print_scale_sigma, uncertainty_.print_scale_sigma);
+  EXPECT_EQ(read.markers_bend, uncertainty_.markers_bend);
   EXPECT_EQ(read.variance_factor, uncertainty_.variance_factor);
   EXPECT_EQ(read.apparent_inset_px, uncertainty_.apparent_inset_px);
   EXPECT_EQ(read.correlation_factor, uncertainty_.correlation_factor);
@@ -114,7 +116,10 @@ TEST_F(UncertaintyFile, FilesOfEarlierVersionsAreRead) {
   WriteVersionWithoutHash();
   EXPECT_EQ(ReadUncertainty(Folder()).points.signs, uncertainty_.points.signs);
   EXPECT_EQ(ReadUncertainty(Folder()).model_hash, 0u);
-  WriteEarlierVersion(5, 1);
+  WriteEarlierVersion(6, 1);
+  EXPECT_EQ(ReadUncertainty(Folder()).print_scale_sigma, uncertainty_.print_scale_sigma);
+  EXPECT_FALSE(ReadUncertainty(Folder()).markers_bend);
+  WriteEarlierVersion(5, 2);
   EXPECT_NE(ReadUncertainty(Folder()).model_hash, 0u);
   EXPECT_EQ(ReadUncertainty(Folder()).print_scale_sigma, 0.0);
 }
