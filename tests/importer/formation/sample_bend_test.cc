@@ -31,7 +31,7 @@ struct BentSamples {
 };
 
 TEST(SampleBend, IsShownByMarkersAroundACylinderOnly) {
-  EXPECT_TRUE(ShowBend(BentSamples(6).samples, ImageFormation(), {}));
+  EXPECT_TRUE(ShowBend(BentSamples(12).samples, ImageFormation(), {}));
   MarkerGridOptions options;
   options.side_px = 60;
   options.rendering.noise_sigma = 2.0;
