@@ -13,7 +13,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // leaves much less than what is significant
+constexpr double kCostTolerance = 1e-5;  // leaves much less than what is significant
 
 // Takes the sides of bent markers for chords, corrects their corners and minimizes.
 void Bend(const ChordSummary& chords, const MarkerState& state,
@@ -27,7 +27,7 @@ void Bend(const ChordSummary& chords, const MarkerState& state,
   solution->weights.chords_as_scale = kUnknownShare * chords.mean_shortening;
   CorrectForBentMarkers(chords.curvatures_1_m, state, *solution->corner_errors, removed,
                         &solution->model);
-  Minimize(kTolerance, solution);
+  Minimize(kCostTolerance, solution);
 }
 
 // Twice the logarithm of how much likelier it is that the markers bend than that they are stiff, by
@@ -68,7 +68,7 @@ void AdjustToBentMarkers(const std::vector<RemovedObservation>& removed, MarkerS
   if (bent_markers == BentMarkers::kBent) return Bend(chords, state, removed, solution);
   if (!(chords.mean_shortening > kMatters)) return;
   MarkerSolution stiff = *solution, bent = *solution;
-  Minimize(kTolerance, &stiff);
+  Minimize(kCostTolerance, &stiff);
   Bend(chords, state, removed, &bent);
   const double evidence = EvidenceForBend(chords, stiff, bent);
   const double significant = InformationCriterion(1, stiff);
