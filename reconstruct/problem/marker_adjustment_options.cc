@@ -44,7 +44,7 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            ChoiceOption("MarkerAdjustment.bent_markers", &options->bent_markers, kBentMarkers,
                         "1: markers bend with a curved surface, so their sides are the chords of "
                         "arcs as long as printed; 0: they are stiff; auto: their proportions "
-                        "decide"),
+                        "and the residuals decide"),
            {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
             "1 sigma of an inset that all corners share (seen too far inside their marker), beyond "
             "what the importer leaves open; widens the scale's sigma",

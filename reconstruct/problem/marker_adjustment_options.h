@@ -8,7 +8,7 @@
 namespace velamap {
 
 enum class BentMarkers {
-  kAuto,  // their proportions decide where it matters
+  kAuto,  // their proportions and the residuals decide where it matters
   kStiff,
   kBent,
 };
