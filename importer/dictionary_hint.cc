@@ -151,7 +151,7 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
   std::vector<DictionaryHint> hints;
   for (auto& [choice, found] : LikelyChoices(found_by_choice, static_cast<int>(num_images))) {
     const int num_markers = found.NumUpTo(found.MaxId());
-    // One picture may show few of the ids, and all of them tell the size of the dictionary.
+    // One picture may show few of the ids; the size of the dictionary follows from all of them.
     for (std::size_t i = num_images; hints.empty() && i < gray_images.size(); ++i) {
       CountMarkers(gray_images[i], choice, border_bits, options, &found);
     }

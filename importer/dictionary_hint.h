@@ -28,8 +28,8 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
                                                 const ArucoDetectionOptions& options);
 
 // The predefined dictionaries of a family, such as DICT_4X4_50 to DICT_4X4_1000, begin with the
-// same markers. The smallest one that has the id, and the largest one: of the family of
-// `dictionary`, which is itself where a family has only one.
+// same markers. These return the smallest one that has the id, and the largest one, in the family
+// of `dictionary`; this is `dictionary` itself if its family has only one.
 std::string SmallestOfFamily(const std::string& dictionary, int max_id);
 std::string LargestOfFamily(const std::string& dictionary);
 

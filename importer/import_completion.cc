@@ -16,7 +16,7 @@
 namespace velamap {
 namespace {
 
-// Of the markers that were found: dictionaries have such codes that no print shows.
+// Warns only of markers that were found: dictionaries have such codes that no print shows.
 void WarnOfSymmetries(const FrameDetector& detector, const std::vector<FrameDetections>& frames) {
   std::set<int> ids;
   for (const FrameDetections& frame : frames) {

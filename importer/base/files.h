@@ -16,8 +16,8 @@ namespace velamap {
 
 class FileLock;
 
-// Links are followed. False if nothing is there; throws if that cannot be determined, because of
-// missing permissions or a path that is too long.
+// Links are followed. Returns false if nothing is there; throws if that cannot be determined,
+// because of missing permissions or a path that is too long.
 bool Exists(const std::filesystem::path& path);
 bool IsFolder(const std::filesystem::path& path);
 bool IsRegularFile(const std::filesystem::path& path);
@@ -54,8 +54,8 @@ std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folde
 // Creates the folder and its missing parents; nothing happens if it is there.
 void CreateFolders(const std::filesystem::path& path);
 
-// Whether both paths lead to one file, which has several names or is reached through links. False
-// unless both exist.
+// Whether both paths lead to one file, which has several names or is reached through links. Returns
+// false unless both exist.
 bool IsSameFile(const std::filesystem::path& path1, const std::filesystem::path& path2);
 
 // FNV-1a, 64 bit: short, and the same on every machine. `hash` continues an earlier one.

@@ -53,8 +53,8 @@ class StageTimer {
   int outer_;
 };
 
-// Takes the time of all threads of the program since its construction, for a stage that is the only
-// one to run.
+// Measures the time of all threads of the program since its construction, for a stage during which
+// no other stage runs.
 class ProcessTimer {
  public:
   ProcessTimer();

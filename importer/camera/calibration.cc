@@ -48,8 +48,8 @@ int ReadImageSize(const cv::FileStorage& storage, const std::string& path, const
   return static_cast<int>(size);
 }
 
-// ": 9 numbers are expected, 13 found; ..." for a matrix with another number of them than its size
-// says, as decimal commas cause; else empty.
+// ": 9 are expected, 13 found; ..." if a matrix holds another number of values than its size says,
+// as decimal commas cause; otherwise empty.
 std::string NumbersText(const cv::FileNode& matrix) {
   if (!matrix.isMap()) return "";
   const cv::FileNode data = matrix["data"];

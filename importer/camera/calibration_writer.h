@@ -35,7 +35,7 @@ const char* DistortionName(CameraModel model, std::size_t index);
 // one line where the camera comes from; it becomes a comment in the file.
 std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin);
 
-// Writes the text to `path`, whole or not at all. Throws InputError where that fails.
+// Writes the text to `path`, whole or not at all. Throws InputError if that fails.
 void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin,
                       const std::string& path);
 

@@ -59,11 +59,12 @@ double MeanFocalLength(const Camera& camera);
 // The smaller of the focal lengths in x and y, px.
 double SmallestFocalLength(const Camera& camera);
 
-// Projects a point into the image (px). Nothing for a point that is not in front of the camera.
+// Projects a point into the image (px). Returns nothing for a point that is not in front of the
+// camera.
 std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam);
 
 // Returns the undistorted ray (x/z, y/z) of an image position in the cam frame, by Newton's method
-// to 1e-12. Nothing where the distortion cannot be inverted, far outside the image.
+// to 1e-12. Returns nothing if the distortion cannot be inverted, far outside the image.
 std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
                                             const Eigen::Vector2d& x_in_image_px);
 

@@ -16,8 +16,8 @@ Camera TurnCamera(const Camera& camera, int quarter_turns);
 Eigen::Vector2d TurnInImage(const Camera& camera, int quarter_turns,
                             const Eigen::Vector2d& x_in_image_px);
 
-// Whether one size is the other turned by 90 degrees, up to a scale (to half a pixel). False for
-// squares.
+// Whether one size is the other turned by 90 degrees, up to a scale (to half a pixel). Returns
+// false for squares.
 bool IsTransposedSize(const Camera& camera, int width_px, int height_px);
 
 }  // namespace velamap

@@ -81,7 +81,7 @@ CornerGrid Oriented(const cv::Mat& gray, CornerGrid grid) {
 }
 
 // The first corners of the blocks of two along `num` corners. If the number is odd, one in the
-// middle is left out, because the outer ones tell most about the lens.
+// middle is left out, because the outer ones are the most informative about the lens.
 std::vector<int> BlockBegins(int num) {
   const int num_blocks = num / 2;
   std::vector<int> begins;

@@ -24,8 +24,8 @@ struct MarkerLook {
 double GrayAt(const cv::Mat& gray, const Eigen::Vector2d& x_px, const MarkerLook& look);
 
 // The quad along whose sides the grey level is halfway between the black border and its
-// surroundings. Corners in OpenCV's pixel frame; `quad` is off by less than half a cell. Nothing
-// where the edge of a side cannot be found.
+// surroundings. Corners in OpenCV's pixel frame; `quad` is off by less than half a cell. Returns
+// nothing if the edge of a side cannot be found.
 std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& quad,
                                       const MarkerLook& look);
 

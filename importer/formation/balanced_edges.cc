@@ -52,7 +52,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, const FitWorkers& w
   }
   const double change = balanced.parameters[kEdgeShift] - shift;
   if (change == 0) return {state, 0.0};
-  // The change itself may be too small to tell how far it moves corners.
+  // The change itself may be too small to show how far it moves corners.
   const double outwards_px =
       MeanInset(state, WithEdgeShift(shift + probe_blurs, state, workers)) / probe_blurs;
   const double share = ShareBeyondNoise(change, edges.sigma_blurs);

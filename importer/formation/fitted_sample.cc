@@ -87,7 +87,7 @@ bool IsClipped(const FittedSample& sample, const SamplePlace& place) {
 
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation) {
-  // Beyond what blur, sharpening and halo reach, pixels of large markers tell nothing.
+  // Pixels of large markers beyond the reach of blur, sharpening and halo carry no information.
   constexpr float kReachOfEdgesPx = 16.0f;
   FittedSample fitted;
   fitted.gray = sample.gray;

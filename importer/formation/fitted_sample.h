@@ -40,7 +40,7 @@ struct FittedSample {
 // is zero.
 bool IsClipped(const FittedSample& sample, const SamplePlace& place);
 
-// Nothing where the fit fails. No residuals yet: RefitSample() computes them.
+// Returns nothing if the fit fails. No residuals yet: RefitSample() computes them.
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation);
 

@@ -15,7 +15,7 @@ using State = FormationState;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
 // Blur, demosaicing, filters and compression correlate the errors of neighbouring pixels: about
-// this many of them are worth one independent pixel. If all counted fully, they would overrule the
+// this many of them are worth one independent pixel. With full weight, they would overrule the
 // priors.
 constexpr double kPixelsAlike = 10.0;
 
@@ -44,7 +44,7 @@ double RootWeight(const State& state, std::size_t i, Eigen::Index j) {
                                     : 1.0;
 }
 
-// Derivatives of the residuals of the i-th sample; zero where a fit failed or jumped.
+// Derivatives of the residuals of the i-th sample; zero if a fit failed or jumped.
 Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::size_t i) {
   const auto residuals_of = [i](const State& one) {
     const std::vector<float>& residuals = one.samples[i].residuals;
@@ -92,7 +92,7 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.7);
   priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2, 0.05, 0.4;
   // The largest gammas stand for the logarithms of flat profiles and HDR video, which are the limit
-  // of a power. A halo of less than 2 px is part of the blur. S is below zero where a camera lifts
+  // of a power. A halo of less than 2 px is part of the blur. S is below zero if a camera lifts
   // shadows and holds back lights, as phones do.
   priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift, -0.1,
       std::log(2.0);

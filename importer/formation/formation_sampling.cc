@@ -26,10 +26,10 @@ namespace {
 // hardly any others.
 constexpr double kMinSidePx = 9.0, kGoodSidePx = 12.0;
 constexpr int kUsualFits = 60;        // of each sample; nine inputs took 40 to 70
-constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
+constexpr double kBestSidePx = 40.0;  // fits of larger markers take longer and add nothing
 
-// Puts the markers first that tell most, those whose size is nearest to kBestSidePx. A Marker has
-// `corners_px`.
+// Sorts the most informative markers first, those whose size is nearest to kBestSidePx. A Marker
+// has `corners_px`.
 template <typename Marker>
 void SortByPreference(std::vector<Marker>* markers) {
   const auto preference = [](const Marker& marker) {

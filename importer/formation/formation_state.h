@@ -78,7 +78,7 @@ FormationState WithOutlineCorners(double weight, const FormationState& state,
 // to another minimum, whose difference from the first is no derivative.
 bool AreAlike(const FittedSample& one, const FittedSample& other);
 
-// By how much `one` has the corners farther inside their markers than `other`, along both sides:
+// How much farther inside their markers the corners are in `one` than in `other`, along both sides:
 // the mean over the samples that are alike in both, px. Both must hold the same samples.
 double MeanInset(const FormationState& one, const FormationState& other);
 

@@ -16,9 +16,10 @@ namespace velamap {
 bool ShowBend(const std::vector<FormationSample>& samples, const ImageFormation& formation,
               const FitWorkers& workers);
 
-// A step towards the best corners and terms of PatternBend, for about `max_pixels` pixels of the
-// fitted sample; then fits the other parameters again as RefinePatternFit() does. The bend changes
-// little from one image formation to the next, so one step follows it. False for a singular system.
+// Takes a step towards the best corners and terms of PatternBend, for about `max_pixels` pixels of
+// the fitted sample; then fits the other parameters again as RefinePatternFit() does. The bend
+// changes little from one image formation to the next, so one step suffices. Returns false for a
+// singular system.
 bool FollowBend(int max_pixels, double tolerance_px, FittedSample* sample);
 
 }  // namespace velamap

@@ -16,7 +16,7 @@ namespace velamap {
 
 // b_from_a that minimizes sum_i w_i |b_from_a * a_i - b_i|^2. Both lists have the same length, at
 // least three; weights are non-negative, empty for all equal. Collinear points leave the rotation
-// about their line undetermined: some minimizer is returned (HasSpread tells).
+// about their line undetermined: some minimizer is returned (see HasSpread()).
 Rigid3 EstimateRigid3(const std::vector<Eigen::Vector3d>& x_in_a,
                       const std::vector<Eigen::Vector3d>& x_in_b,
                       const std::vector<double>& weights = {});

@@ -21,7 +21,7 @@ struct UnitFrame {
 };
 
 // Brings all corners to mean 0 and RMS distance 1, so that the frame and the unit of the space do
-// not affect the search. Nothing for corners without extent.
+// not affect the search. Returns nothing for corners without extent.
 std::optional<UnitFrame> CenterAndScale(std::vector<MarkerRays>* markers) {
   UnitFrame frame;
   const double num_corners = static_cast<double>(kNumCorners * markers->size());

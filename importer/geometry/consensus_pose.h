@@ -19,7 +19,7 @@ namespace velamap {
 
 struct PoseHypothesis {
   Rigid3 cam_from_space;
-  double cost = 0.0;             // of each marker the squared error, at most 1
+  double cost = 0.0;             // sum of the markers' squared errors, each at most 1
   std::vector<int> inlier_idxs;  // of the markers with an error up to 1, ascending
 };
 

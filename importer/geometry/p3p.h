@@ -24,7 +24,7 @@ struct SampledCorner {
   std::size_t marker_idx, corner_idx;
 };
 
-// A random corner of each of three random markers; nothing where a marker was drawn twice.
+// A random corner of each of three random markers; nothing if a marker was drawn twice.
 std::optional<std::array<SampledCorner, 3>> SampleCorners(std::size_t num_markers,
                                                           std::mt19937* generator);
 

@@ -38,8 +38,8 @@ struct ImageLine {
   Eigen::Vector2d point_px, direction;
 };
 
-// The directions are about unit vectors. Nothing if the lines are nearly parallel: the sine of the
-// angle between them is below 0.05.
+// The directions are about unit vectors. Returns nothing if the lines are nearly parallel: the sine
+// of the angle between them is below 0.05.
 std::optional<Eigen::Vector2d> Intersect(const ImageLine& a, const ImageLine& b);
 
 }  // namespace velamap

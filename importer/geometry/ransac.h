@@ -92,8 +92,8 @@ typename Estimator::Hypothesis RefineHypothesis(const Estimator& estimator, int 
   return hypothesis;
 }
 
-// At most `max_count` hypotheses by ascending cost, without those that are nearly the same as a
-// better one: is_same(a, b) tells.
+// At most `max_count` hypotheses by ascending cost, without those for which is_same(a, b) says that
+// they are nearly the same as a better one.
 template <typename Hypothesis, typename IsSame>
 std::vector<Hypothesis> DistinctHypotheses(std::vector<Hypothesis> hypotheses,
                                            const IsSame& is_same, std::size_t max_count) {

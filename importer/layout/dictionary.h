@@ -60,7 +60,7 @@ struct ReadCode {
 };
 
 // The marker whose cells, as MarkerCells() draws them, are exactly these in one of the four
-// rotations. Nothing if there is none, or if the border is not black.
+// rotations. Returns nothing if there is none, or if the border is not black.
 std::optional<ReadCode> ReadCells(const Dictionary& dictionary, const cv::Mat& cells,
                                   int border_bits);
 

@@ -58,8 +58,8 @@ double ReadOffset(const YamlItem& item) {
   return offset_m;
 }
 
-// A vertical line for luff and leech. The lines of foot and head are the outer horizontal ones: the
-// surface ends at them, or `offset` beyond.
+// The line of luff or leech must be vertical; that of foot or head must be the outermost horizontal
+// one. The surface ends at it, or `offset` beyond.
 void CheckEdgeLine(const YamlItem& item, const std::string& name, const LayoutPart& part,
                    EdgeKind kind) {
   const auto is_it = [&](const MarkerLine& line) { return line.name == name; };

@@ -87,8 +87,8 @@ std::vector<MarkerLine> ReadLines(const YamlItem& list, const std::string& part,
   return lines;
 }
 
-// A marker on two horizontal lines would draw the surface from one of them to the other. It may be
-// on a horizontal and on vertical ones, which meet there.
+// A marker on two horizontal lines would pull the surface from one of them to the other. It may be
+// on a horizontal line and on vertical ones, which meet there.
 void CheckOneLineEach(const YamlItem& list, const std::vector<MarkerLine>& lines) {
   struct Place {
     const MarkerLine* line;

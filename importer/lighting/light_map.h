@@ -17,8 +17,8 @@ struct LitPixel {
   double by_log_light = 0.0;
 };
 
-// For each part of a marker, the light that the model lacks there: the mean logarithm of the
-// recorded light over the modelled one.
+// For each part of a marker, the light that the model lacks there: the mean logarithm of the ratio
+// of the recorded light to the modelled one.
 struct LightMap {
   struct Part {
     Eigen::Vector2d place;
@@ -36,8 +36,8 @@ struct FoundBand {
   double unexplained = 1.0;  // share of the map's squares
 };
 
-// The band that explains the map best beside a light that is even, slopes and curves. The map must
-// not be empty.
+// The band that best explains the map together with a smooth light (constant, slope and curvature).
+// The map must not be empty.
 FoundBand FindBand(const LightMap& map);
 
 }  // namespace velamap

@@ -1,11 +1,11 @@
-// How the light that falls on a marker differs from an even one with a linear gradient: it falls
-// off along the marker, or the edges of shadows cross it.
+// How the light on a marker differs from one that is even or has a linear gradient: it falls off
+// along the marker, or the edges of shadows cross it.
 //
 //   lighting(x) = exp(bend_xx x^2 + bend_xy x y + bend_yy y^2) * prod_k (1 - depth_k * band_k(x))
 //
-// with places x relative to the marker's middle, in parts of its diagonal; band_k is 1 between two
+// with places x relative to the marker's middle, in units of its diagonal; band_k is 1 between two
 // parallel edges, each blurred by a Gaussian. A shadow whose other edge lies beyond the marker is a
-// wide band, a bright band has a depth below zero.
+// wide band; a bright band has a negative depth.
 
 #pragma once
 

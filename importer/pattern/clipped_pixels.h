@@ -14,15 +14,16 @@
 
 namespace velamap {
 
-// Whether pixels of the box are clipped. False if a fifth of them or more is clipped at each end,
-// as in drawings: with neither level known, edges could not be located, so the values are used as
-// they are.
+// Whether pixels of the box are clipped. Returns false if a fifth of them or more is clipped at
+// each end, as in drawings: with neither level known, edges could not be located, so the values are
+// used as they are.
 bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box);
 
 // RefinePatternFit() with the clipped values replaced by those that, according to the model
 // `minimum`, a camera without limits would have recorded, and with no weight for these pixels.
 // Repeated until no corner moves farther than `tolerance_px`. `gray` and `formation` are those that
-// the problem was made with; HasClippedPixels() holds for them. False for a singular system.
+// the problem was made with; HasClippedPixels() holds for them. Returns false for a singular
+// system.
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum);
 

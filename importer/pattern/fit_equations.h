@@ -28,7 +28,7 @@ class FitEquations {
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
   using Jacobian = FloatsArray<kCount>;
 
-  // Makes room for so many groups of observations.
+  // Reserves memory for this many groups of observations.
   void Reserve(std::size_t num_groups) {
     jacobians_.reserve(num_groups);
     residuals_.reserve(num_groups);

@@ -18,8 +18,8 @@ namespace {
 using P = PatternParameters;
 
 // The smallest residual of a foreign pixel, grey levels. It is a multiple of the noise of pixels on
-// edges, so a model that misses all edges slightly does not make them foreign. Nothing for too few
-// pixels.
+// edges, so a model that misses all edges slightly does not make them foreign. Returns nothing for
+// too few pixels.
 std::optional<double> ForeignLimit(const std::vector<PixelResidual>& residuals, double contrast) {
   constexpr double kContrast = 0.1, kSigmas = 6.0;
   constexpr double kEdgeSlope = 0.05;  // of the contrast per pixel

@@ -43,7 +43,7 @@ struct ImageFormationParameters {
   // Weight of the pixels at the corners of the cells' outlines. Printers, noise filters and
   // compression round these corners, which the blur of straight edges does not describe.
   double outline_corner_weight = 1.0;
-  // The share is below zero where a camera raises local contrast.
+  // The share is below zero if a camera raises local contrast.
   double halo = 0.0;
   double halo_radius_px = 2.7;
 };

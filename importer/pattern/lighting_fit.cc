@@ -116,7 +116,8 @@ VELAMAP_CLONE_FOR_AVX2 JointEquations SumJointly(const PatternProblem& problem,
   return equations;
 }
 
-// Improves the lighting and the fit in turns, by steps of both together. False where the fit fails.
+// Improves the lighting and the fit in turns, by steps of both together. Returns false if the fit
+// fails.
 bool RefineLighting(Lighting* lighting, PatternProblem* problem, PatternMinimum* minimum) {
   constexpr int kMaxSteps = 10;
   constexpr double kLeastDecrease = 0.005, kMaxDamping = 10;

@@ -8,11 +8,11 @@
 
 namespace velamap {
 
-// Fits again with an uneven lighting where the residuals of a fit have the pattern of one: the
-// means over parts of the marker, relative to the light there, scatter much more than the noise
-// within the parts explains, and up to two bands, or a curved fall-off, take most of that away.
-// Otherwise, as where the ink of a print differs from cell to cell, the fit stays, and the lighting
-// is even.
+// Fits again with an uneven lighting if the residuals of a fit have the pattern of one: the means
+// over parts of the marker, relative to the light there, scatter much more than the noise within
+// the parts explains, and up to two bands, or a curved fall-off, explain most of that scatter.
+// Otherwise, for example if the ink of a print differs from cell to cell, the fit is kept, and the
+// lighting is even.
 Lighting FitLighting(PatternProblem* problem, PatternMinimum* minimum);
 
 // What the uncertainty of the lighting adds to the inverse of the Hessian of the fit's parameters.

@@ -33,7 +33,7 @@ struct PatternBend {
 };
 
 // The bend that fits displacements best. `displacement_px` returns the displacement, px, of a place
-// of the unit square; the bend is zero where it returns nothing for one of them.
+// of the unit square; the bend is zero if it returns nothing for one of them.
 PatternBend BendByDisplacements(
     const std::function<std::optional<Eigen::Vector2d>(const Eigen::Vector2d& uv)>&
         displacement_px);

@@ -26,8 +26,8 @@
 
 namespace velamap {
 
-// Corners in OpenCV's pixel frame. Nothing if the marker leaves the image, has too little contrast
-// or does not look like its cells.
+// Corners in OpenCV's pixel frame. Returns nothing if the marker leaves the image, has too little
+// contrast or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
                                          const KnownMarker& marker,
                                          const ImageFormation& formation);

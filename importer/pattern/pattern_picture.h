@@ -79,7 +79,7 @@ class PatternPicture {
 
   // Whether a place is at a corner of the outlines of the cells, within the smaller of both
   // reaches; -1 for yes. Printers, noise filters and compression round these corners more than the
-  // blur of straight edges tells.
+  // blur of straight edges does.
   Ints IsAtOutlineCorner(Floats x, Floats y, float reach_px = 2.0f,
                          float reach_cells = 0.4f) const {
     const Place place = ToSquare(x, y);

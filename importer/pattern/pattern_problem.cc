@@ -38,8 +38,8 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPix
   equations->Finish(parameters - problem.mean, problem.weight);
 }
 
-// Enlarged pictures and large markers out of focus have a wide blur. Where it is wider than half a
-// cell, the cells run into each other.
+// Enlarged pictures, and large markers that are out of focus, have a wide blur. If it is wider than
+// half a cell, the cells merge.
 double MaxBlurPx(const PatternModel& model) {
   constexpr double kUsual = 4.0, kOfCell = 0.5;
   const double cell_px = model.diagonal_px / (std::sqrt(2.0) * model.num_cells);
@@ -77,8 +77,8 @@ struct PixelFit {
   void Predict(const P::Vector& step, Equations* equations) const { equations->Predict(step); }
 };
 
-// Fits about `max_pixels` pixels until a step moves no corner further than `tolerance_px`. False
-// for too few pixels or a singular system.
+// Fits about `max_pixels` pixels until a step moves no corner further than `tolerance_px`. Returns
+// false for too few pixels or a singular system.
 bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px,
               PatternMinimum* minimum) {
   const ChosenPixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
@@ -92,7 +92,7 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
                          &minimum->equations) != Convergence::kFailed;
 }
 
-// The pixels of the image that the quiet zone of one cell can reach; nothing where the marker
+// The pixels of the image that the quiet zone of one cell can reach; nothing if the marker
 // leaves the image.
 std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSquareMap& map,
                                    int num_cells, const cv::Mat& gray) {

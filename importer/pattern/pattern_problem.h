@@ -37,8 +37,8 @@ struct PatternMinimum {
   PatternEquations equations;
 };
 
-// Corners as in FitPattern(). Nothing where the marker leaves the image, has too many cells or too
-// little contrast. `formation` must outlive the problem. Sets the initial parameters.
+// Corners as in FitPattern(). Returns nothing if the marker leaves the image, has too many cells or
+// too little contrast. `formation` must outlive the problem. Sets the initial parameters.
 std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
                                                  const KnownMarker& marker,
                                                  const ImageFormation& formation,
@@ -57,12 +57,13 @@ void SetPatch(GrayPatch patch, PatternProblem* problem);
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem);
 
 // Reads the surroundings of the quiet zone again and fits all parameters to about `max_pixels`
-// pixels, until a step moves no corner further than `tolerance_px`. False for a singular system.
+// pixels, until a step moves no corner further than `tolerance_px`. Returns false for a singular
+// system.
 bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* problem,
                       PatternMinimum* minimum);
 
-// From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. False if
-// the image does not show such a marker.
+// From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. Returns
+// false if the image does not show such a marker.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum);
 
 }  // namespace velamap

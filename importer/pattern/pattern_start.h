@@ -8,7 +8,7 @@ namespace velamap {
 
 constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;  // cells
 
-// Sets the initial parameters and the priors. False for too little contrast.
+// Sets the initial parameters and the priors. Returns false for too little contrast.
 bool StartPatternFit(const QuadCorners& corners_px, const ImageFormationParameters& formation,
                      PatternProblem* problem, PatternMinimum* minimum);
 

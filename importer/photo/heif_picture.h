@@ -19,7 +19,7 @@ bool IsHeif(const std::vector<std::uint8_t>& bytes);
 std::optional<cv::Size> HeifSize(const std::vector<std::uint8_t>& bytes);
 
 // The primary picture, BGR, 8 bit, as stored: rotation, mirroring and cropping of the metadata are
-// left out, as in other photographs. Empty where HeifSize() gives nothing, and where the data
+// left out, as in other photographs. Empty if HeifSize() gives nothing, or if the data
 // cannot be decoded; `*damage` then says why. Wrong bits in the data mostly decode to some picture.
 cv::Mat DecodeHeif(const std::vector<std::uint8_t>& bytes, std::string* damage);
 

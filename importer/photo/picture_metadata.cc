@@ -24,7 +24,7 @@ ExifPtr ReadExif(const std::string& path) {
           exif_data_unref};
 }
 
-// Nothing where the tag is missing, is no number, or is not positive.
+// Returns nothing if the tag is missing, is no number, or is not positive.
 std::optional<double> PositiveNumber(ExifData* data, ExifIfd directory, ExifTag tag) {
   const ExifEntry* entry = exif_content_get_entry(data->ifd[directory], tag);
   if (entry == nullptr || entry->components < 1 || entry->data == nullptr) return std::nullopt;

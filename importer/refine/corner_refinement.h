@@ -22,8 +22,8 @@ namespace velamap {
 
 // Returns the corners with their uncertainty. `corners_px` and the result are in OpenCV's pixel
 // frame (first pixel's centre at (0,0)), in order around the square; `num_cells` is the number of
-// cells along a side with the border. Nothing if an edge has too little contrast or leaves the
-// image, or if the fit moves a corner too far.
+// cells along a side with the border. Returns nothing if an edge has too little contrast or leaves
+// the image, or if the fit moves a corner too far.
 std::optional<RefinedCorners> RefineCornersBySides(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells);
 

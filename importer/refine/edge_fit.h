@@ -84,7 +84,7 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
                     EdgeEquations::Jacobian* jacobian);
 
 // Levenberg-Marquardt from the prior's mean until a step moves the edge no further than
-// `tolerance_px`. False with too few samples or a singular system.
+// `tolerance_px`. Returns false with too few samples or a singular system.
 bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px, EdgeFit* fit);
 
 struct EdgeUncertainty {
@@ -94,7 +94,7 @@ struct EdgeUncertainty {
 };
 
 // At the minimum that FitEdge() found. The priors stabilize weak parameters but are not
-// observations, so that their own error does not count. Nothing for a singular system.
+// observations, so that their own error does not count. Returns nothing for a singular system.
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior);
 
 }  // namespace velamap

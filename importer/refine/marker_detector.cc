@@ -38,7 +38,7 @@ struct FittedDetection {
   double rms_gray = std::numeric_limits<double>::infinity();
 };
 
-// Nothing for a quad that shows no marker.
+// Returns nothing for a quad that shows no marker.
 std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const MarkerQuad& found,
                                             const Dictionary& dictionary, int border_bits,
                                             const ArucoDetectionOptions& options,

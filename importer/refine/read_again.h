@@ -1,6 +1,6 @@
-// A second reading of a marker's code, from the fit of the whole marker. Blur and an outline that
-// is a pixel off make the search take one code for another where codes differ in few cells, as
-// those of 3x3 cells do.
+// Reads a marker's code a second time, from the fit of the whole marker. If codes differ in few
+// cells, as those of 3x3 cells do, blur and an outline that is a pixel off make the search mistake
+// one code for another.
 
 #pragma once
 
@@ -29,9 +29,9 @@ struct ReadMarker {
 KnownMarker KnownMarkerAt(const MarkerQuad& quad, const Dictionary& dictionary, int border_bits,
                           const std::vector<double>& sides_mm, const Camera* camera);
 
-// `gray`: 8-bit, with dark markers on light paper. The id changes where the cells that the image
-// shows are the code of another marker of the dictionary, and this one fits clearly better.
-// `sides_mm` and `camera` as in RefineMarkers().
+// `gray`: 8-bit, with dark markers on light paper. The id changes if the cells in the image are the
+// code of another marker of the dictionary, and that marker fits clearly better. `sides_mm` and
+// `camera` as in RefineMarkers().
 ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
                               const Dictionary& dictionary, int border_bits,
                               const ImageFormation& formation,

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kNumNearest = 3;
 
-// The margin of the mean cosine between top sides by which the best turn must beat the second. It
-// means that a marker with half turns is within 75 degrees of its neighbours, with quarter turns
-// within 24.
+// The best turn must exceed the second best by this margin of the mean cosine between top sides. A
+// marker with half turns is then within 75 degrees of its neighbours, one with quarter turns within
+// 24.
 constexpr double kMinLead = 0.5;
 
 // Unit vector along the top side, from corner 1 to corner 2, after `turn` quarter turns.

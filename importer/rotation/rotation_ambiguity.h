@@ -22,8 +22,8 @@ namespace velamap {
 using CodeSymmetries = std::map<int, std::vector<int>>;
 CodeSymmetries FindCodeSymmetries(const Dictionary& dictionary);
 
-// The reason for leaving out a marker whose neighbours do not decide; other frames may resolve it
-// (rotation_evidence.h).
+// The reason for leaving out a marker whose rotation its neighbours do not decide; other frames may
+// resolve it (rotation_evidence.h).
 inline constexpr char kDoubtfulRotation[] =
     "looks the same when turned, neither neighbours nor other frames tell how it stands";
 

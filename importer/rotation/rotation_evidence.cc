@@ -111,8 +111,8 @@ KnownRelations LearnRelations(const CodeSymmetries& symmetries,
   return known;
 }
 
-// The turn on which all known relations with the markers of the frame agree, or -1 where there are
-// none or they disagree. A marker that is not where it should be, such as a false id, is ignored.
+// The turn on which all known relations with the markers of the frame agree; -1 if there are none
+// or they disagree. A marker that is not where it should be, such as a false id, is ignored.
 int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_turns,
                const KnownRelations& known, const std::vector<MarkerDetection>& others) {
   std::vector<int> turns = {0};

@@ -15,7 +15,8 @@ std::string IdRanges(std::vector<int> ids);
 // Returns whether the text is a marker id, 0 to kMaxMarkerId; `id` is left alone otherwise.
 bool ParseMarkerId(std::string_view text, int* id);
 
-// The ids of a text such as `7`, `0-16` or, in descending order, `16-0`. Nothing for other text.
+// The ids of a text such as `7`, `0-16` or, in descending order, `16-0`. Returns nothing for other
+// text.
 std::optional<std::vector<int>> ParseIdRange(std::string_view text);
 
 // The same for several ids and ranges separated by commas, such as `3,17,20-25`.

@@ -60,7 +60,7 @@ std::vector<std::string> Words(std::string name) {
   return words;
 }
 
-// Nothing for names that have no word in common, however few their words are.
+// Returns nothing for names that have no word in common, however few their words are.
 std::optional<int> WordDistance(const std::string& a, const std::string& b) {
   const std::vector<std::string> words1 = Words(a), words2 = Words(b);
   const int distance = EditDistance(

@@ -70,7 +70,7 @@ std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const 
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);
 
 // Locates one marker whose place is known to `reach_px`, as LocateMarker() does. Also returns
-// nothing where a search would reject the marker. Thread-safe.
+// nothing if a search would reject the marker. Thread-safe.
 std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px);

@@ -37,7 +37,7 @@ void LocateOrAddRegion(const FrameSearch& search, int marker_id, const TrackPred
   }
 }
 
-// Adds the markers found in the regions. False if these fill most of the picture.
+// Adds the markers found in the regions. Returns false if these fill most of the picture.
 bool SearchRegions(const FrameSearch& search, std::vector<cv::Rect> regions,
                    std::vector<MarkerQuad>* quads) {
   regions = MergeRegions(std::move(regions));
@@ -68,7 +68,7 @@ struct FirstPass {
   std::vector<PointMotion> motions;
 };
 
-// Nothing if the regions fill most of the picture.
+// Returns nothing if the regions fill most of the picture.
 std::optional<FirstPass> SearchByVelocity(const FrameSearch& search, int num_frames,
                                           const std::vector<MarkerTrack>& tracks) {
   std::vector<PointMotion> velocities;
@@ -105,7 +105,7 @@ bool HasLostTrack(const std::vector<MarkerTrack>& tracks, const std::vector<int>
   return num_found < kMinFoundFraction * num_expected;
 }
 
-// Both passes; nothing where the whole frame has to be searched.
+// Both passes; nothing if the whole frame has to be searched.
 std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, int num_frames,
                                                     MarkerTracks* tracks) {
   const cv::Size& size = search.image_size;

@@ -25,8 +25,8 @@ std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corne
   return rays;
 }
 
-// Nothing unless the whole marker is in front of the camera and within the field of view, outside
-// of which a distortion model may fold over.
+// Returns nothing unless the whole marker is in front of the camera and within the field of view,
+// outside of which a distortion model may fold over.
 std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_from_shape,
                                      const std::array<Eigen::Vector3d, kNumCorners>& in_shape_m) {
   QuadCorners corners_px;

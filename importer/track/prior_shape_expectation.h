@@ -23,7 +23,7 @@ struct PriorShapeView {
 };
 
 // The pose by the consensus of the found markers that the prior shape holds (consensus_pose.h). Ids
-// that are found twice are ignored. Nothing with fewer than kMinConsensus markers.
+// that are found twice are ignored. Returns nothing with fewer than kMinConsensus markers.
 std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, const Camera& camera,
                                                 const std::vector<MarkerQuad>& found,
                                                 PriorShapeAgreement* agreement);

@@ -36,8 +36,9 @@ class VideoPicture {
   // The whole picture in BGR, 8 bit. Empty if FFmpeg cannot convert the pixel format.
   cv::Mat Color() const;
 
-  // The chroma that belongs to Gray(). Nothing if the picture stores it in another way, or has an
-  // odd size, where the last values belong to half as many pixels (the first ones, once turned).
+  // The chroma that belongs to Gray(). Returns nothing if the picture stores it in another way, or
+  // has an odd size, where the last values belong to half as many pixels (the first ones, once
+  // turned).
   std::optional<ChromaPlanes> HalfSizeChroma() const;
 
   // Color() of single pixels, without converting the rest of the picture.
