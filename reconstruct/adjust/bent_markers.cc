@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kCostTolerance = 1e-5;  // leaves much less than what is significant
 
-// Takes the sides of bent markers for chords, corrects their corners and minimizes.
+// Treats the sides of bent markers as chords, corrects their corners and minimizes.
 void Bend(const ChordSummary& chords, const MarkerState& state,
           const std::vector<RemovedObservation>& removed, MarkerSolution* solution) {
-  // Of the shortening: neighbours show the curvature between markers, not that of the marker, and
-  // the correction of the corners is not exact.
+  // 1 sigma of the shortening, as a fraction of it. The neighbours show the curvature between
+  // markers, not that of the marker, and the correction of the corners is not exact.
   constexpr double kUnknownShare = 0.25;
   for (const MarkerBlock& marker : state.markers) {
     solution->chords[marker.marker_id] = marker.chords;
@@ -30,15 +30,15 @@ void Bend(const ChordSummary& chords, const MarkerState& state,
   Minimize(kCostTolerance, solution);
 }
 
-// Twice the logarithm of how much likelier it is that the markers bend than that they are stiff, by
-// their proportions and by how well both fit the images.
+// Twice the log-likelihood ratio of markers that bend to markers that are stiff, from their
+// proportions and from how well both fit the images.
 double EvidenceForBend(const ChordSummary& chords, const MarkerSolution& stiff,
                        const MarkerSolution& bent) {
   const auto linearization = Linearize(stiff);
   const BendEvidence by_proportions = FindBendEvidence(
       linearization->state, linearization->covariance, chords.curvatures_1_m, stiff.options);
   const double by_images = SumOfSquares(stiff) - SumOfSquares(bent);
-  // The search for a camera tries many times.
+  // The camera search gets here many times.
   LogMessage(stiff.options.find_camera ? LogLevel::kDebug : LogLevel::kInfo,
              "markers follow {:.2f} +- {:.2f} of the curvature of their surface, all of which "
              "shortens their sides by {:.2f} % on average; if they follow all of it, the squared "

@@ -1,4 +1,4 @@
-// Markers on curved surfaces: whether they bend, and what follows from it.
+// Decides whether markers on a curved surface bend with it, and adjusts for the bend.
 
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace velamap {
 
-// Where markers bend with a curved surface, takes their sides for chords, moves their corners in
-// the images to where a fit of the bent pattern would have found them (also those that `removed`
-// lists), and minimizes. `solution` must have been minimized with hardly any weight on the printed
-// sizes. If the option bent_markers leaves open whether markers bend and it would change the size
-// by more than 0.05 %, the proportions of the markers and the residuals of the images decide, by
-// the Bayesian information criterion; if they cannot, there is a warning where the change would
-// exceed 1 sigma of the scale of the print.
+// If the markers bend with a curved surface, treats their sides as chords, moves their corners in
+// the images (including those in `removed`) to where a fit of the bent pattern would have found
+// them, and minimizes. `solution` must come from a minimization that gave hardly any weight to the
+// printed sizes. If the option bent_markers leaves the question open and bending would change the
+// size by more than 0.05 %, the proportions of the markers and the residuals of the images decide,
+// by the Bayesian information criterion. If they cannot, and the change would exceed 1 sigma of the
+// scale of the print, a warning is added.
 void AdjustToBentMarkers(const std::vector<RemovedObservation>& removed, MarkerSolution* solution);
 
 }  // namespace velamap

@@ -12,16 +12,16 @@ namespace velamap {
 
 struct RefinedIntrinsics {
   FreeIntrinsics free;
-  // 1 sigma of the prior, as a fraction: a calibration that the images contradict counts less than
-  // an ordinary one.
+  // 1 sigma of the prior, as a fraction. It is larger than for an ordinary calibration, because the
+  // images contradict this one.
   double sigma = 0.0;
 };
 
 // Chooses the intrinsics to free in a solution that holds the calibration. Returns nothing unless
 // the sum of squares falls by more than the Bayesian information criterion (Schwarz 1978), times
 // the square of the factor of correlated errors, and the images determine these intrinsics clearly
-// better than the calibration does. It also returns nothing without refine_calibration, and where
-// the options free intrinsics.
+// better than the calibration does. Also returns nothing if refine_calibration is off or the
+// options already free intrinsics.
 std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution);
 
 // Reports how far the cameras of the solution are from their calibration: in the log if

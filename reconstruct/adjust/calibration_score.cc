@@ -17,8 +17,8 @@ namespace {
 constexpr int kFocal = 0, kFirstDistortion = 4, kNumWarps = 8;
 using WarpMatrix = Eigen::Matrix<double, 2, kNumWarps>;
 
-// If the adjustment absorbs nearly all of a warp, it has the same effect as another shape, and the
-// rest is rounding. A warp needs at least this share of its information.
+// If the adjustment absorbs nearly all of a warp, the warp has the same effect as another shape,
+// and the rest is rounding error. A warp needs at least this share of its information.
 constexpr double kMinShareOfInformation = 1e-6;
 
 // Displacements, px, at (u, v): distance from the principal point in half diagonals of the image.
@@ -39,10 +39,9 @@ double HalfDiagonal(const Camera& camera) {
   return 0.5 * std::hypot(camera.width_px, camera.height_px);
 }
 
-// Derivatives of all residuals with respect to the warps of one camera, at the places of the
-// corners by the model. At the places where the corners were found, the warps would contain their
-// errors, and the residuals would agree with that part of a warp that the adjustment does not
-// absorb.
+// Derivatives of all residuals with respect to the warps of one camera, evaluated at the projected
+// corners. At the detected corners, the warps would contain their errors, and the residuals would
+// correlate with the part of a warp that the adjustment does not absorb.
 RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, CameraId camera_id,
                             const RowMajorMatrix& residuals) {
   const Camera& camera = model.cameras.at(camera_id);

@@ -11,8 +11,8 @@ namespace velamap {
 // position and span the effects of a wrong focal length, aspect, principal point, and radial and
 // tangential distortion. The linearized adjustment absorbs as much of each warp as poses and shape
 // can; the rest is fitted to all residuals. These include the sides of the markers, which a wrong
-// calibration makes too long near the centre and too short near the border, or the other way round.
-// Of warps that the adjustment refines, only what their prior holds back is tested. For several
+// calibration makes too long near the centre and too short near the border, or vice versa. If the
+// adjustment refines a warp, only the part that its prior suppresses is tested. For several
 // cameras, returns the strongest evidence. `linearization` is that of the solution `model`, with
 // calibrated sigmas that contain the correlation of errors.
 CalibrationEvidence TestCalibration(const Model& model, const MarkerLinearization& linearization);

@@ -33,7 +33,7 @@ double Explained(const Model& model) {
   return explained;
 }
 
-// One radial term alone cannot follow a wide lens.
+// A single radial term cannot follow a wide lens.
 void AddSecondRadialTerm(Model* model) {
   for (auto& [camera_id, camera] : model->cameras) {
     if (camera.model == CameraModel::kSimpleRadial) {
@@ -61,7 +61,7 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
   return adjustment;
 }
 
-// Removes the images of which two groups of focal lengths do not tell.
+// Removes the images that the two groups of focal lengths leave undecided.
 void RemoveUndecidedImages(const FocalStep& step, Model* model) {
   if (step.IsInTime()) return;
   const auto undecided = std::stable_partition(

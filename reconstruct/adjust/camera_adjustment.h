@@ -1,4 +1,4 @@
-// The cameras that explain a registration best, if no calibration is given or one is to be made.
+// Estimates cameras by adjustment, for images without a calibration and for making one.
 
 #pragma once
 
@@ -18,15 +18,15 @@ namespace velamap {
 
 struct CameraAdjustment {
   std::map<CameraId, Camera> cameras;
-  // How much the model explains with these cameras: the sum of a score over all corners, which is 1
-  // for an error of 0 and falls to 0 at 0.0005 of the picture's larger side.
+  // Sum over all corners of a score that is 1 for an error of 0 and falls to 0 at 0.0005 of the
+  // picture's larger side: how much the model explains with these cameras.
   double explained = 0.0;
-  // 1 sigma of the (first) focal length by camera, px; not of turned cameras.
+  // 1 sigma of the first focal length of each camera, px; turned cameras are left out.
   std::map<CameraId, double> focal_sigmas_px;
 };
 
 // Adjusts a copy of `model` with all cameras free (find_camera), from their given values, and
-// chooses the camera model by the evidence. Throws DataError where nothing can be adjusted.
+// chooses the camera model by the evidence. Throws DataError if nothing can be adjusted.
 CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
                                const CornerErrors& corner_errors, const Model& model);
 
@@ -37,17 +37,16 @@ struct CalibrationAdjustment {
   std::vector<CameraModelScore> scores;
 };
 
-// Adjusts a model for the sake of its camera. The camera model is the one that predicts unseen
-// pictures best (camera_cross_validation.h), or the `wanted` one. Throws DataError where
+// Adjusts a model to calibrate its camera. The camera model is the one that predicts unseen
+// pictures best (camera_cross_validation.h), or the `wanted` one. Throws DataError as
 // AdjustWithMarkers() does.
 CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& options,
                                            const Layout& layout, const CornerErrors& corner_errors,
                                            Model model, std::optional<CameraModel> wanted);
 
 // Returns `step`, the step of the focal length in a verdict on steadiness (camera_steadiness.h), if
-// it is real. A certain step always is; a suspicious one is if MeasureFocalStep() finds it in
-// `seed`, the model before its adjustment (may be null). Measured values replace those of the
-// verdict.
+// it is certain, or if it is suspicious and MeasureFocalStep() confirms it in `seed`, the model
+// before its adjustment (may be null). Measured values replace those of the verdict.
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);

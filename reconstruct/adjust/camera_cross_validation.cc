@@ -29,7 +29,7 @@ constexpr std::array<CameraModel, 6> kModels = {
     CameraModel::kOpenCV,        CameraModel::kFullOpenCV,   CameraModel::kOpenCVFisheye};
 constexpr std::size_t kNumDivisions = 5;
 
-// Residuals of the points of one image, px, by its pose.
+// Residuals of the points of one image, px, as a function of its pose.
 class ImagePoseProblem : public LeastSquaresProblem<6> {
  public:
   using Parameters = Rigid3;  // cam_from_world
@@ -78,7 +78,7 @@ double RmsOf(const std::vector<ErrorSum>& sums) {
                                : std::numeric_limits<double>::infinity();
 }
 
-// The division of each image: neighbours are in different ones.
+// The division of each image. Neighbouring images are in different divisions.
 std::vector<int> Divisions(const Model& model) {
   std::vector<int> divisions(model.images.size());
   for (std::size_t i = 0; i < divisions.size(); ++i) {

@@ -31,21 +31,21 @@ struct CrossValidation {
 // if it is better by more than chance, and one that folds over inside the picture only if all do.
 // Chooses `wanted` regardless of the errors. A fisheye is tried if a camera sees more than 35
 // degrees off its axis. All models are refined from `solution`, whose options have find_camera, and
-// judged by the same corners. Throws DataError where none can be refined, or the wanted one cannot.
+// judged by the same corners. Throws DataError if none can be refined, or the wanted one cannot.
 CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
                                           std::optional<CameraModel> wanted);
 
-// The solution with the model that leaves the smallest residuals, regardless of its predictions.
+// Returns the solution with the model that leaves the smallest residuals, however well it predicts.
 // Corners that contradict even this model are outliers; those that contradict only a simpler one
 // may be right, because the simpler model may not describe the lens.
 MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution);
 
 // 1 sigma of the parameters of each camera by the jackknife (Tukey 1958): up to twenty groups of
-// pictures that follow each other (GroupImages) are left out in turn. It tells how far the cameras
-// of other pictures of the same kind would differ. The covariance of the adjustment accounts for
-// errors that pictures have in common, and for those of the camera model, by one factor for all
-// parameters (error_correlation.h); the jackknife takes them from the scatter of each parameter.
-// Empty where fewer than two groups can be left out.
+// consecutive pictures (GroupImages()) are left out in turn. It shows how far the cameras of other
+// pictures of the same kind would differ. The covariance of the adjustment accounts for errors that
+// pictures share, and for those of the camera model, by one factor for all parameters
+// (error_correlation.h); the jackknife takes them from the scatter of each parameter. Empty if
+// fewer than two groups can be left out.
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution);
 
 }  // namespace velamap

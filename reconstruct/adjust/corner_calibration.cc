@@ -14,9 +14,9 @@ namespace {
 // Exact corners would leave no weight to the priors.
 constexpr double kMinCornerFactor = 1e-3;
 
-// The factor of the corners' sigmas from the variance factor of the sigmas before any factor. Few
-// residuals may be small by chance, and a smaller factor would then make them smaller still, so
-// that the detector's own sigmas count as much as this number of residuals.
+// The factor of the corners' sigmas, from their variance factor before any factor. Few residuals
+// may be small by chance, and a smaller factor would make them smaller still, so the detector's own
+// sigmas count as much as kOfDetector residuals.
 double CornerFactor(double variance_factor, double redundancy) {
   constexpr double kOfDetector = 4.0;
   return std::max(kMinCornerFactor, std::sqrt((variance_factor * redundancy + kOfDetector) /

@@ -16,16 +16,16 @@ namespace velamap {
 std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
                                               const MarkerLinearization& linearization);
 
-// Widens the sigmas of principal point and distortion to what they are for OPENCV, if the cameras
-// have a model of fewer parameters. A tangential distortion that the model leaves out passes for a
-// shift of the principal point, so its prior belongs to the sigmas. The focal length keeps its
+// Widens the sigmas of principal point and distortion to those for OPENCV, if the cameras have a
+// model of fewer parameters. A tangential distortion that the model lacks is mistaken for a shift
+// of the principal point, so the sigmas have to include its prior. The focal length keeps its
 // sigma, because it hardly depends on either.
 void WidenToOpenCV(const MarkerSolution& solution, std::map<CameraId, EstimatedCamera>* cameras);
 
 void WarnOfFoldedCameras(MarkerSolution* solution);
 
-// Throws DataError where the images do not determine a focal length: its sigma is above 5 %.
-// `weakness` is what FindWeakGeometry() says.
+// Throws DataError if the images do not determine a focal length (sigma above 5 %). `weakness` is
+// the warning of FindWeakGeometry().
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
                       const std::string& weakness);
 

@@ -23,7 +23,7 @@ class MarkerAdjuster {
 
   // Removes outliers of the seed and underconstrained images and points, scales the model to metres
   // by the median of the marker sides and moves the world to the first image's camera. Throws
-  // DataError where too little is left.
+  // DataError if too little is left.
   void PrepareSeed();
 
   // Minimizes with hardly any weight on the markers' sizes, so that the images decide, and
@@ -46,18 +46,17 @@ class MarkerAdjuster {
   // shutter's time in `begin` and adjusts from there again.
   static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
 
-  // With find_camera, after AdjustToCorners: takes the camera model that explains the images best.
+  // With find_camera, after AdjustToCorners(): takes the model that explains the images best.
   void ChooseCameraModel();
-  // The same by cross-validation (camera_cross_validation.h), or takes the `wanted` model. Restores
-  // the corners that the most flexible model explains.
+  // Chooses it by cross-validation instead (camera_cross_validation.h), or takes the `wanted` one.
+  // Restores the corners that the most flexible model explains.
   std::vector<CameraModelScore> CrossValidateCameraModel(std::optional<CameraModel> wanted);
-  // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
-  // To be called after AdjustToCorners(), with `begin` as this adjuster was before it. Adjusts
-  // `begin` once more, with those intrinsics free that the images determine better than the
-  // calibration does. Returns nothing unless the new intrinsics explain the corners significantly
-  // better.
+  // Call this after AdjustToCorners(), with a `begin` that is a copy of this adjuster from before
+  // that call. Adjusts `begin` again, with those intrinsics free that the images determine better
+  // than the calibration does. Returns nothing unless the new intrinsics explain the corners
+  // significantly better.
   std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
 
   // Adds the scale bars that agree with each other. If they contradict the markers, widens the

@@ -24,8 +24,8 @@ struct MarkerAdjustmentSummary {
   std::vector<RemovedObservation> removed;
   std::vector<ImageId> removed_images;
   AdjustmentUncertainty uncertainty;
-  // With find_camera: the cameras of the result and their sigmas, which hold the sigmas of shape
-  // and poses.
+  // With find_camera: the cameras of the result and their sigmas, which include the uncertainty of
+  // shape and poses.
   std::map<CameraId, EstimatedCamera> cameras;
   // Messages about weak geometry (all views from one place, a flat board seen head-on, pure
   // rotation), scale bars that contradict each other or the markers, parts that disagree, and
@@ -37,7 +37,7 @@ struct MarkerAdjustmentSummary {
 // first image's camera, and its point errors are up to date. Throws DataError if nothing can be
 // adjusted, the mean error stays above max_mean_error_px, or the images leave the shape
 // undetermined, and InputError if refine_extra_params is set and the refined distortion folds over
-// inside the image; the model does not change then.
+// inside the image. The model is unchanged if it throws.
 MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model* model);

@@ -68,8 +68,8 @@ bool HoldFoldedDistortion(MarkerSolution* solution) {
   return true;
 }
 
-// How far 1 sigma of the velocity that the corners of an image share shifts them, in sigmas of the
-// corners: one column for an error of the velocity along x, one for one along y.
+// The shift of the corners, in their sigmas, by 1 sigma of the velocity error that the corners of
+// an image share: one column for the velocity along x, one for that along y.
 RowMajorMatrix SharedShiftErrors(const MarkerSolution& solution,
                                  const MarkerLinearization& linearization) {
   const MarkerProblem& problem = linearization.problem;

@@ -51,23 +51,22 @@ struct MarkerLinearization {
 void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution* solution);
 
 // Minimizes until a step changes the cost by less than the fraction `function_tolerance`. A refined
-// distortion that folds over inside the image is held at the calibration, with a warning; where the
-// user's options free it, that is an InputError. Throws DataError where no step can be computed.
+// distortion that folds over inside the image is held at the calibration, with a warning; if the
+// user's options free it, throws InputError. Throws DataError if no step can be computed.
 void Minimize(double function_tolerance, MarkerSolution* solution);
 
-// Throws DataError where a combination of parameters is undetermined.
+// Throws DataError if a combination of parameters is undetermined.
 std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solution);
 
 // CorrelationFactor() for groups of neighbouring images.
 double ShapeCorrelationFactor(const MarkerSolution& solution,
                               const MarkerLinearization& linearization);
 
-// 1 sigma, s, of the time from the first row to the last, which must be a free parameter. It is
-// larger than `independent_sigma_s`, the sigma by independent errors of the corners, because cloth
-// that moves between two frames moves its markers as a rolling shutter does, because all corners of
-// an image share errors of their velocity, because the scatter of a few groups of images, which
-// shows common errors, is itself uncertain (Student's t), and because compression shortens the
-// time.
+// 1 sigma, in s, of the readout time (from the first row to the last), which must be a free
+// parameter. It is larger than `independent_sigma_s`, the sigma from independent errors of the
+// corners: cloth that moves between two frames looks like a rolling shutter, all corners of an
+// image share errors of their velocity, the scatter of a few groups of images is itself uncertain
+// (Student's t), and compression shortens the time.
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization);
 
@@ -77,8 +76,8 @@ std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSol
 // Sum of the squares of all residuals in sigmas, as reduced by the loss.
 double SumOfSquares(const MarkerSolution& solution);
 
-// The decrease of SumOfSquares that is significant for this many more parameters: the Bayesian
-// information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
+// The decrease of SumOfSquares() that is significant for `num_parameters` more parameters: the
+// Bayesian information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
 double InformationCriterion(int num_parameters, const MarkerSolution& solution);
 
 }  // namespace velamap

@@ -18,7 +18,7 @@ namespace {
 // time.
 constexpr double kFastest_s = 1e-3;
 
-// Corners that fitted as long as the motion was part of the errors.
+// Removes corners that fitted only while the motion counted as a part of their errors.
 void RemoveTrialOutliers(MarkerSolution* trial) {
   std::vector<RemovedObservation> removed;
   std::vector<ImageId> removed_images;
@@ -29,7 +29,7 @@ void RemoveTrialOutliers(MarkerSolution* trial) {
   Minimize(1e-4, trial);
 }
 
-// Whether a trial with that time as a parameter determines it. Throws DataError where the trial
+// Whether a trial with the readout time as a parameter determines it. Throws DataError if the trial
 // fails.
 bool IsDetermined(MarkerSolution trial) {
   trial.weights.frees_rolling_shutter = true;
@@ -48,7 +48,7 @@ bool IsDetermined(MarkerSolution trial) {
   const double sigmas = state.rolling_shutter_s / sigma_s;
   const bool is_determined = sigmas * sigmas > InformationCriterion(1, trial) &&
                              std::abs(state.rolling_shutter_s) > kFastest_s;
-  // The search for a camera tries many times.
+  // The camera search gets here many times.
   LogMessage(trial.options.find_camera ? LogLevel::kDebug : LogLevel::kInfo,
              "the motion {} a rolling shutter: {:.2f} +- {:.2f} ms from the first row to the last",
              is_determined ? "shows" : "does not show", 1e3 * state.rolling_shutter_s,

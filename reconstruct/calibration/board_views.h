@@ -53,9 +53,9 @@ struct BoardView {
 std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& images,
                                           double unknown_sigma_px);
 
-// Leaves out views that repeat the one before: in which no corner is further than `tolerance_px`
-// from its place there. The sharpest of them stays. Many copies of one picture, as from a camera
-// that stands still, would let its errors pass for those of many pictures.
+// Drops views that repeat the one before, i.e. in which no corner has moved by more than
+// `tolerance_px`, and keeps the sharpest of them. Otherwise the errors of one picture of a camera
+// that stands still would count as the independent errors of many.
 std::vector<BoardView> WithoutRepeatedViews(const std::vector<BoardView>& views,
                                             double tolerance_px);
 

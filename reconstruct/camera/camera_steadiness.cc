@@ -143,7 +143,7 @@ double Separation(const std::vector<ImageIntrinsics>& values, std::size_t i) {
 }
 
 // The step that best divides the images into those before one image and those from it on. If the
-// scatter on both sides is larger than the sigmas, it counts instead of them.
+// values on both sides scatter more than their sigmas, the scatter replaces the sigmas.
 std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageIntrinsics>& values) {
   constexpr std::size_t kMinImages = 2;
   std::optional<FocalStep> largest;
@@ -161,8 +161,8 @@ std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageInt
   return largest;
 }
 
-// The two groups into which the images fall by their focal length, if they do and if the images of
-// one do not all follow those of the other. `values` is in the order of time.
+// The two groups that the focal lengths of the images form, if they do and the images of one group
+// do not all follow those of the other. `values` is in the order of time.
 std::optional<FocalStep> FindGroups(const Model& model,
                                     const std::vector<ImageIntrinsics>& values) {
   constexpr std::size_t kMinImages = 3;

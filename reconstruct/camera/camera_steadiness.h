@@ -26,7 +26,7 @@ struct ImageIntrinsics {
   Eigen::Vector2d offset_sigma_px = Eigen::Vector2d::Zero();
 };
 
-// For images that see at least eight corners; nothing for an image that does not determine them.
+// Returns an entry for each image that sees at least eight corners and determines its intrinsics.
 std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model);
 
 // Two focal lengths, before and after an image, or of two groups of images that alternate.
@@ -38,8 +38,8 @@ struct FocalStep {
   // scatter. For two groups, whose images were chosen by their focal length, in units of the
   // scatter of a single image.
   double sigmas = 0.0;
-  // Two groups: the images of the second focal length, which do not all follow the others, and
-  // those of the first. The other images do not tell. Both are empty for a step in time.
+  // For two groups: the images with the second focal length, which do not all follow the others,
+  // and those with the first; other images are undecided. Both are empty for a step in time.
   std::set<ImageId> image_ids_after{}, image_ids_before{};
 
   bool IsInTime() const { return image_ids_after.empty(); }
@@ -64,12 +64,12 @@ struct PrincipalPointWander {
 };
 
 struct SteadinessVerdict {
-  // The step that divides the images best; nothing for few images. Two groups that alternate come
-  // first: they are at least five times as far apart as the images of a group scatter. Images whose
-  // focal length is all the same, or changes slowly as with the focus, never fall into such groups
-  // (2.7 for normally distributed ones, 4.1 for a sine).
+  // The step that divides the images best; none if there are few images. Two alternating groups
+  // take precedence if they are at least five times as far apart as the images of a group scatter.
+  // That ratio stays below five if the focal length is constant or changes slowly, as with the
+  // focus (2.7 for a normal distribution, 4.1 for a sine).
   std::optional<FocalStep> step;
-  // Nothing unless the principal point wanders by at least 0.4 % of the larger side and 4 sigmas.
+  // None unless the principal point wanders by at least 0.4 % of the larger side and 4 sigmas.
   std::optional<PrincipalPointWander> wander;
 };
 

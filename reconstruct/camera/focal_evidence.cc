@@ -65,7 +65,7 @@ Eigen::Matrix<double, 2 * kNumCorners, 6> ByPose(const Camera& camera, const Rig
   return jacobian;
 }
 
-// Nothing where the camera cannot have seen the square.
+// Returns nothing if the camera cannot have seen the square.
 std::optional<ViewErrors> ErrorsOf(const Camera& camera, const SquareView& view, bool with_change) {
   const std::vector<MarkerPose> poses = EstimateMarkerPoses(camera, view.corners_px, 1.0);
   if (poses.empty()) return std::nullopt;

@@ -1,4 +1,4 @@
-// Corners of markers that were fitted before their lens was known.
+// Corrects the corners of markers that were fitted before the lens was known.
 
 #pragma once
 

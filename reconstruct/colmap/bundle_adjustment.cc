@@ -49,8 +49,8 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
 }
 
 // Checks that COLMAP's result has all images, points, tracks and cameras of its input `before`,
-// because its exit status may be 0 although it failed. Throws InputError where the distortion
-// cannot be refined as the options ask.
+// because its exit status may be 0 although it failed. Throws InputError if the distortion cannot
+// be refined as the options ask.
 void CheckStructure(const BundleAdjustmentOptions& options, const Model& before, const Model& after,
                     const std::string& log_path) {
   const auto fail = [&log_path](const std::string& what) { ThrowImplausible(what, log_path); };
@@ -89,7 +89,7 @@ void CheckStructure(const BundleAdjustmentOptions& options, const Model& before,
   }
 }
 
-// Leaves out points behind their cameras, which ReviseObservations removes.
+// RMS error without points behind their cameras, which ReviseObservations() removes.
 double RmsError(const Model& model) {
   std::vector<double> errors_px;
   for (const ObservationError& error : ComputeReprojectionErrors(model)) {

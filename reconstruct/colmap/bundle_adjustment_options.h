@@ -33,8 +33,8 @@ struct BundleAdjustmentOptions {
 Option ColmapPathOption(BundleAdjustmentOptions* options);
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options);
 
-// Throws DataError where an adjusted model's mean reprojection error is above max_mean_error_px or
-// not a number. With `has_calibration`, the cause may be a calibration of another camera.
+// Throws DataError if the mean reprojection error of an adjusted model is above max_mean_error_px
+// or not a number. The cause may be a wrong calibration if `has_calibration`.
 void CheckMeanError(double mean_error_px, double max_mean_error_px, bool has_calibration);
 
 // Throws the InputError for refine_extra_params where the refined distortion of a camera folds over

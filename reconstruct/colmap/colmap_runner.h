@@ -9,10 +9,10 @@
 
 namespace velamap {
 
-// The longest time that a run may take; then it is stopped.
+// The longest time that a run may take before it is stopped.
 struct ColmapLimit {
   std::chrono::duration<double> time;
-  std::string set_by;  // what the message names, such as an option
+  std::string set_by;  // named in the message, such as an option
 };
 
 // For questions that COLMAP answers at once.

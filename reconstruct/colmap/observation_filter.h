@@ -37,8 +37,8 @@ bool RestoreObservation(const RemovedObservation& observation, double max_error_
 void RemoveUnderconstrained(int min_track_length, Model* model,
                             std::vector<ImageId>* removed_images);
 
-// Throws DataError where fewer than two images or no points are left of the model.
-// `num_images_before` and `num_outliers` are what it had and what was removed.
+// Throws DataError if fewer than two images or no points are left of the model. `num_images_before`
+// and `num_outliers` are what it had and what was removed.
 void CheckEnough(const Model& model, std::size_t num_images_before, std::size_t num_outliers);
 
 }  // namespace velamap

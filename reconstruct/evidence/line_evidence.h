@@ -5,9 +5,9 @@
 // A step is the distance between neighbours. However cloth is bent, folded or rolled up, neighbours
 // are never farther apart than along the cloth. The detour over a marker between two others is
 // therefore at most twice the shorter of its two distances, which on a line of equal steps is at
-// most one step per place between the two others. The prices exceed this, so that bent cloth never
-// costs a true marker, except for markers that few of their images show. A line with uneven steps
-// gets a larger step.
+// most one step per place between the two others. The prices exceed this, so bent cloth never
+// leaves out a true marker, unless few of the images that should show it do. A line with uneven
+// steps gets a larger step.
 
 #pragma once
 
@@ -44,7 +44,7 @@ double EstimateStep(const std::vector<LinePoint>& points);
 double SmallestStep(const std::vector<LinePoint>& points);
 
 // Whether two points, given in the order of the line, are no farther apart than the steps between
-// their places, plus `num_uneven_steps` steps because the spacing is uneven.
+// their places plus `num_uneven_steps` steps for uneven spacing.
 bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
                     double num_uneven_steps = 0.5);
 

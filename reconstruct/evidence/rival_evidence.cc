@@ -100,10 +100,10 @@ LineVotes VotesFor(const std::vector<std::vector<JudgedLine>>& lines_of_part,
   return votes;
 }
 
-// Whether the lines support a marker rather than its rival in the place that both claim. They do if
-// only this marker has a majority of its votes or, where the majorities do not decide, if its
-// nearest vote is at most half as far away as that of the rival. A rival that is on no line cannot
-// be contradicted by one.
+// Whether the lines support a marker rather than its rival for the same place. They do if only this
+// marker has a majority of its votes or, if the majorities do not decide, if its nearest vote is at
+// most half as far away as that of the rival. A rival that is on no line cannot be contradicted by
+// one.
 bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   constexpr double kMuchNearer = 0.5;
   if (votes.num_for == 0 || of_rival.num_asked == 0) return false;

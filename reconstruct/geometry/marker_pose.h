@@ -26,7 +26,7 @@ struct MarkerPose {
 // Corners 1..4 in the marker frame (x right, y up, z out of the face), m.
 std::array<Eigen::Vector3d, kNumCorners> CornersInMarker(double marker_length_m);
 
-// One or two poses, the one with the smaller reprojection error first. Empty where a corner
+// One or two poses, the one with the smaller reprojection error first. Empty if a corner
 // has no ray or no pose is in front of the camera.
 std::vector<MarkerPose> EstimateMarkerPoses(
     const Camera& camera, const std::array<Eigen::Vector2d, kNumCorners>& corners_in_image_px,

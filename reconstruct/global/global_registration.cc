@@ -28,7 +28,7 @@ namespace {
 constexpr int kMaxStartFrames = 32;
 
 // The frames of a video without those that repeat the one before. Many copies of one frame would
-// outvote all others, whose errors are not those of the copies.
+// outvote all others, which do not share its errors.
 std::vector<int> FramesThatDiffer(GlobalRegistration* global) {
   const std::vector<bool> is_repeated = FindRepeatedFrames(global->images);
   std::vector<int> differ;
@@ -48,7 +48,7 @@ std::vector<int> FramesThatDiffer(GlobalRegistration* global) {
   return differ;
 }
 
-// Of these frames, by index.
+// Chooses among the frames with these indices.
 std::vector<int> ChooseCandidates(const GlobalRegistration& global, const std::vector<int>& idxs,
                                   std::size_t max_num_candidates) {
   std::vector<const DatabaseImage*> images;
@@ -85,7 +85,7 @@ void ChooseFrames(GlobalRegistration* global) {
   global->image_idx_of_frame = std::move(chosen);
 }
 
-// Frames evenly over a video, and all photographs, because any may be the only link.
+// Frames at even distances over a video, or all photographs, because any may be the only link.
 std::vector<int> FramesForStarts(const GlobalRegistration& global) {
   const int num_frames = static_cast<int>(global.problem.frames.size());
   const int step =

@@ -6,15 +6,15 @@
 //
 // 1. Frames. All photographs take part. A video, without frames that repeat the one before, is
 //    divided into twice max_num_frames stretches of equal length, and the frame with the most and
-//    sharpest markers of each is registered. In the end, the max_num_frames frames stay that add
-//    most to the information on all marker centres.
+//    sharpest markers of each is registered. Finally, the max_num_frames frames that add most to
+//    the information on all marker centres are kept.
 // 2. Starts. A map starts from two frames with many common markers and a parallax near 20 degrees.
 //    Both reliefs of the pair are adjusted, and the better one is kept.
 // 3. Growth. The frames that see most of the map join it by resection (map_resection.h), from the
 //    two planar solutions of single markers and from P3P. A frame with two good poses waits. Each
 //    marker is placed by the consensus of all registered frames that see it (map_intersection.h);
-//    it keeps two places until views decide. After every round all poses and places are adjusted
-//    with a Cauchy loss (map_adjustment.h).
+//    it keeps two places until the views decide between them. After every round, all poses and
+//    places are adjusted with a Cauchy loss (map_adjustment.h).
 // 4. Choice. num_starts maps grow to 32 frames, and the one that explains most observations is
 //    kept. If two maps agree within the noise of the corners, no more are grown. The reversed
 //    relief of the winner is tried once more.
@@ -22,10 +22,10 @@
 //    frames whose corners scatter three times as much as those of the other frames, and
 //    observations beyond five robust sigmas are left out (map_cleanup.h), and so are the markers
 //    that the layout contradicts (evidence/layout_evidence.h).
-// 6. Doubt. Markers that are posed alone show the noise of the corners without regard to the shape.
+// 6. Doubt. The poses of single markers show the noise of the corners independently of the shape.
 //    If the errors of the map are four times that noise, the result carries a note
-//    (map_verdict.h). Frames that are sharp and yet do not fit, and those with many outliers, may
-//    be of another camera (CameraDoubt() in registration/registration.h).
+//    (map_verdict.h). Frames that are sharp and yet do not fit, and frames with many outliers, may
+//    come from another camera (CameraDoubt() in registration/registration.h).
 //
 // The order and the ids of the images do not change the result; the random seed only draws the
 // triples.

@@ -27,7 +27,7 @@ struct GlobalRegistration {
   std::vector<LeftOut> left_out_of_image;        // by index in `images`
   std::map<int, DroppedMarker> dropped_markers;  // by marker_idx
   std::vector<std::string> notes;
-  // Markers of the map that a frame shows although it contradicts the map, by frame_idx.
+  // Number of map markers in each frame that contradicts the map, by frame_idx.
   std::map<int, int> num_contradicting_of_frame{};
 
   MapGrowthOptions Growth() const {

@@ -20,7 +20,7 @@ constexpr double kMaxSizeRatio = 1.25;
 constexpr double kRivalRatio = 0.6;
 // A frame is left out when its corners scatter this many times as much as all corners.
 constexpr double kBlurRatio = 3.0;
-// Its markers, each posed alone, show whether blur is the reason: lens and cloth alone make the
+// The poses of its single markers show whether blur is the reason: lens and cloth alone make the
 // errors at most this many times as large as the noise of the corners.
 constexpr double kMaxRatioToOwnNoise = 2.0;
 constexpr int kMinViewsWithoutBlurred = 3;
@@ -43,8 +43,8 @@ bool IsInlierRenumbered(const GlobalRegistration& global, int observation_idx, i
   return false;
 }
 
-// Whether these observations of one marker show another marker, which far more frames see: then the
-// id was misread here.
+// Whether these observations of one marker show another marker, which far more frames see. The id
+// was then misread here.
 bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
   const auto count = static_cast<double>(observation_idxs.size());
@@ -63,8 +63,8 @@ bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
   return false;
 }
 
-// Whether the observations see the marker at its place with wrongly numbered corners, which makes
-// no second place.
+// Whether the observations see the marker at its place with wrongly numbered corners. This does not
+// count as a second place.
 bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
   if (global.solution.Places(marker_idx).empty()) return false;
@@ -73,8 +73,8 @@ bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
   });
 }
 
-// The markers whose places explain all inliers of this marker, whichever corner each is
-// numbered from: a misread code may start at any.
+// The markers whose places explain all inliers of this marker, from whichever corner they are
+// numbered: a misread code may start at any corner.
 std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
   std::vector<int> rival_ids;
   for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());

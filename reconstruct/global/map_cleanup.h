@@ -17,7 +17,8 @@ void DropWrongSizes(GlobalRegistration* global);
 bool DropContradictions(const Layout& layout, GlobalRegistration* global);
 
 // Leaves out frames whose corners scatter far more than in other frames, if other frames see their
-// markers often enough. Those whose single markers are sharp contradict the map. Needs `noise`.
+// markers often enough. If the single markers of such a frame are sharp, it is counted as
+// contradicting the map. Needs `noise`.
 void LeaveOutBlurredFrames(GlobalRegistration* global);
 
 // Leaves out all frames of a video but the max_num_frames that add most to the precision. Needs

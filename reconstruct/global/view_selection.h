@@ -18,8 +18,8 @@ std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& 
 // Selection of registered frames: greedily takes the frame that adds most to the sum of the
 // log-determinants of the information matrices of all marker centres, which accounts for parallax,
 // coverage of the markers, distance and sharpness together. `sigma_factor_of_frame`, by frame_idx,
-// says how many times as much as their sigmas the corners of a frame scatter. `first_idx` is always
-// taken. Indices ascend.
+// is the ratio of the scatter of a frame's corners to their sigmas. `first_idx` is always taken.
+// Indices ascend.
 std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solution,
                              const std::vector<double>& sigma_factor_of_frame, int first_idx,
                              int max_num_frames);

@@ -71,8 +71,8 @@ class AdjustableMap {
     }
   }
 
-  // Minimizes with the first frame that takes part held fixed. False where no frame takes part or
-  // no step can be computed.
+  // Minimizes with the first frame that takes part held fixed. Returns false if no frame takes part
+  // or no step can be computed.
   bool Minimize(const SchurOptions& options) {
     const auto first =
         std::find_if(frames_.begin(), frames_.end(), [](const auto& f) { return f.has_value(); });

@@ -60,8 +60,8 @@ std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSoluti
   return candidates;
 }
 
-// The pose at which a frame joins the map; nothing where too few markers support one, or where two
-// poses explain the frame.
+// The pose at which a frame joins the map. Returns nothing if too few markers support one, or if
+// two poses explain the frame.
 std::optional<Rigid3> FindPose(const MapProblem& problem, const MapSolution& solution,
                                const MapGrowthOptions& options, int frame_idx,
                                double tolerance_factor, bool accept_ambiguous) {

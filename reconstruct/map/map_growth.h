@@ -29,8 +29,8 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
                            int num_threads, MapSolution* solution);
 
-// Whether a marker has one place and the registered frames that see it agree with that: at least
-// two of them, and at least the ratio `settled_ratio`.
+// Whether a marker has a single place that at least two of the registered frames that see it, and
+// at least the share `settled_ratio` of them, agree with.
 bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marker_idx,
                double settled_ratio);
 

@@ -13,7 +13,7 @@
 namespace velamap {
 namespace {
 
-// Frames whose planar solutions are hypotheses, and that form pairs with others.
+// The number of frames that supply planar solutions as hypotheses and form pairs with others.
 constexpr std::size_t kMaxViews = 8;
 constexpr std::size_t kMaxRefinedPlaces = 3;
 // Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11

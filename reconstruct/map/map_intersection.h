@@ -16,7 +16,7 @@ struct PlaceHypothesis {
 
 struct MarkerPlacement {
   // The place that most frames support, followed by a rival where one explains the frames nearly as
-  // well (the other planar solution). Empty where no two frames agree.
+  // well (the other planar solution). Empty if no two frames agree.
   std::vector<PlaceHypothesis> places;
   // Observations that do not agree with the best place but agree on another one, as when the id
   // exists twice or was misread.

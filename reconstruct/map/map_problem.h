@@ -75,7 +75,7 @@ struct MapSolution {
   int NumRegistered() const;
 };
 
-// Estimates the poses of each marker from each of its observations by itself. The frames get their
+// Estimates the poses of each marker from each of its observations separately. The frames get their
 // frame_idx in the order of `images`. `num_threads` 0: one per core; never changes the result.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
                           const std::map<CameraId, Camera>& cameras, const Layout& layout,
@@ -84,11 +84,11 @@ MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
 MapSolution EmptySolution(const MapProblem& problem);
 
 // RMS distance of the four corners from their projections with the given pose and place, px.
-// Infinite where a corner is not in front of the camera.
+// Infinite if a corner is not in front of the camera.
 double ReprojectionError(const MapProblem& problem, const MapObservation& observation,
                          const Rigid3& cam_from_shape, const Sim3& shape_from_marker);
 
-// The same for a solution: the smaller error where the marker has two places; infinite where the
+// The same for a solution: the smaller error where the marker has two places; infinite if the
 // frame has no pose or the marker no place.
 double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
                          const MapObservation& observation);

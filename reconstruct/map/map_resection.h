@@ -13,7 +13,7 @@ namespace velamap {
 // At most three distinct poses in the frame of the map, the best first; their inliers are
 // observations of the problem. Hypotheses come from single markers (each with its planar solutions)
 // and from corners of three markers (P3P); they are ranked by a truncated sum of squares, in which
-// an observation beyond `tolerance_factor` * GrowthTolerance counts 1, and refined. Empty where the
+// an observation beyond `tolerance_factor` * GrowthTolerance counts 1, and refined. Empty if the
 // frame sees no known marker.
 std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolution& solution,
                                         int frame_idx, double tolerance_factor,

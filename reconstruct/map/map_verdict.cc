@@ -38,9 +38,9 @@ std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
   return errors_px;
 }
 
-// A marker as a frame should show it: the width across its shorter direction, px. Nothing if it is
-// turned away, or not completely in the image with the margin of half its width that detection
-// needs.
+// A marker as a frame should show it: the width across its shorter direction, px. Returns nothing
+// if it is turned away, or not completely in the image with the margin of half its width that
+// detection needs.
 std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_shape,
                                  const std::array<Eigen::Vector3d, kNumCorners>& corners) {
   const Eigen::Vector3d normal = (corners[0] - corners[1]).cross(corners[2] - corners[1]);

@@ -18,12 +18,12 @@ struct MapNoise {
   // in single frames (0: not registered).
   double factor = 1.0;
   std::vector<double> factor_of_frame;  // by frame_idx
-  // The same for the markers of a frame that are posed alone: the noise of its corners, blur
-  // included, whether or not the frame fits the map.
+  // The same for markers whose poses are estimated one by one: the noise of the frame's corners,
+  // including blur, whether or not the frame fits the map.
   std::vector<double> single_marker_factor_of_frame;
-  // The same in px, for the map and for markers that are posed alone. The latter is the noise of
-  // the corners and does not depend on the shape; the noise of the map is larger if the shape is
-  // wrong or the surface moved.
+  // The same in px, for the map and for single markers. The latter is the noise of the corners and
+  // does not depend on the shape; the noise of the map is larger if the shape is wrong or the
+  // surface moved.
   double sigma_px = 0.0;
   double single_marker_sigma_px = 0.0;
 };

@@ -143,7 +143,7 @@ void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader)
   }
 }
 
-// Of the ids and coordinates of all points; never 0.
+// Hash of the ids and coordinates of all points; never 0.
 std::uint64_t HashOfPoints(const Model& model) {
   std::uint64_t hash = Hash("points");
   for (const auto& [point3D_id, point] : model.points3D) {

@@ -46,7 +46,7 @@ struct AdjustmentUncertainty {
   // The markers bend with a curved surface, so their sides are chords (SetChords()).
   bool markers_bend = false;
   CalibrationEvidence calibration;
-  std::uint64_t model_hash = 0;  // of the points of its model, where a file says it; else 0
+  std::uint64_t model_hash = 0;  // of the points of its model; 0 if the file lacks it
 };
 
 // The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see

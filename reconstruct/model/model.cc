@@ -37,8 +37,8 @@ std::string FindCameraFault(CameraId camera_id, const Camera& camera) {
   return "";
 }
 
-// Checks the references from images to points. FindUntrackedObservation checks the way back: as
-// every track element is valid and unique, comparing numbers of observations suffices.
+// Checks the references from images to points. FindUntrackedObservation() checks the way back; as
+// every track element is valid and unique, it only compares numbers of observations.
 std::string FindImageFault(const Model& model, const ModelImage& image) {
   if (model.cameras.count(image.camera_id) == 0) {
     return fmt::format("image {} has camera {}, which does not exist", image.image_id,

@@ -24,8 +24,8 @@ struct ModelImage {
   CameraId camera_id = 0;
   std::string name;
   Rigid3 cam_from_world;
-  // By keypoint_idx of the database. Corrected for the rolling shutter and for markers that bend,
-  // if the adjustment knows of them.
+  // By keypoint_idx of the database. Corrected for the rolling shutter and for markers that bend if
+  // the adjustment models these.
   std::vector<Point2D> points2D;
 };
 
@@ -48,7 +48,7 @@ struct Model {
   std::vector<ModelImage> images;
   std::map<Point3DId, Point3D> points3D;
 
-  // Returns null where there is no such image.
+  // Returns null if there is no such image.
   const ModelImage* FindImage(ImageId image_id) const;
   ModelImage* FindImage(ImageId image_id);
 };

@@ -13,7 +13,7 @@
 namespace velamap {
 
 // The rotation of a file's quaternion (w, x, y, z). It is normalized unless its length is 1 up to
-// rounding, so that models round-trip exactly. Nothing if its length is zero or not finite.
+// rounding, so that models round-trip exactly. Returns nothing if its length is zero or not finite.
 std::optional<Eigen::Quaterniond> RotationFromFile(const Eigen::Vector4d& wxyz);
 
 // Ordered by image, then 2D point.

@@ -26,7 +26,7 @@ struct TurnedCameras {
 // removes the turned camera. The camera of the first image stays.
 TurnedCameras TieTurnedCameras(Model* model);
 
-// Turns the same images the other way, as if quarter_turns were 3 instead of 1 or 1 instead of 3.
+// Turns the same images the other way: quarter_turns becomes 3 instead of 1, or 1 instead of 3.
 // Only the principal point shows which of the two is right.
 void TurnTheOtherWay(TurnedCameras* turned, Model* model);
 

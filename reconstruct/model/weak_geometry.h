@@ -12,7 +12,7 @@ namespace velamap {
 // Returns a warning for a metric model whose points are poorly determined along the line of sight,
 // with the likely reason: all images from one place, a flat object seen head-on, markers that the
 // images from other places do not show, hardly any parallax. Empty for good geometry; an uncertain
-// scale of the whole is not weak geometry. Throws DataError where the points are uncertain by more
+// scale of the whole is not weak geometry. Throws DataError if the points are uncertain by more
 // than a fifth of the object's extent.
 std::string FindWeakGeometry(const Model& model, const PointCovariance& points);
 

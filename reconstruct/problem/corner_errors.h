@@ -21,7 +21,7 @@ struct CornerErrors {
   double common_inset_px = 0.0;
 };
 
-// `formation` comes from the database; nothing where that has none.
+// `formation` comes from the database; nothing if that has none.
 CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
                             const std::optional<FormationEstimate>& formation = std::nullopt);
 

@@ -36,7 +36,7 @@ void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigma
 // sees two neighbouring corners of them.
 std::map<int, double> MeanSidesPx(const Model& model);
 
-// Median length of all sides in the images, px. Infinite where no image sees two neighbouring
+// Median length of all sides in the images, px. Infinite if no image sees two neighbouring
 // corners.
 double MedianSidePx(const Model& model);
 

@@ -31,17 +31,17 @@ double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const std::vector<int>& groups, int num_threads);
 
 // The factor, 1 or more, by which the sigma of the global parameter in `column` has to grow. It is
-// found like CorrelationFactor, from movements of this parameter instead of the shape, but kept
-// where it may be chance: the few groups of one parameter would hide factors of up to 1.5. It
-// contains whatever the residuals of a group have in common, such as a motion of the markers that
-// no parameter describes.
+// found like CorrelationFactor(), from movements of this parameter instead of the shape, but
+// without the test for chance: with the few groups of one parameter, that test would hide factors
+// of up to 1.5. It contains whatever the residuals of a group have in common, such as a motion of
+// the markers that no parameter describes.
 double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                                const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                                const std::vector<int>& groups, int column, int num_threads);
 
 // 1 sigma of the global parameter in `column` due to errors that the corners of an image share.
-// `errors`: two rows for each entry of problem.corners, in sigmas of the corners; in each column, 1
-// sigma of one error of all images, which is independent from image to image.
+// `errors` has two rows for each entry of problem.corners, in sigmas of the corners. Each column is
+// 1 sigma of one kind of error, which is independent from image to image.
 double SigmaByImageErrors(const MarkerProblem& problem, const MarkerJacobian& jacobian,
                           const MarkerCovariance& covariance, int column,
                           const RowMajorMatrix& errors);

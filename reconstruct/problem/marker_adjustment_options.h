@@ -51,8 +51,8 @@ struct MarkerAdjustmentOptions {
   // and slant is attributed to it as well: on a rendered sail, 0.031 +- 0.006 px are found where
   // the truth is 0.013 px, and the scale gets worse.
   bool estimate_inset = false;
-  // Refined parameters have the calibration as their prior. Of the extra parameters, only those are
-  // refined that the calibration gives.
+  // The calibration is the prior of refined parameters. Of the extra parameters, only those that
+  // the calibration gives are refined.
   bool refine_focal_length = false;
   bool refine_principal_point = false;
   bool refine_extra_params = false;
@@ -64,9 +64,10 @@ struct MarkerAdjustmentOptions {
   // The cameras are unknown: refine all parameters, with the prior of an unknown camera
   // (UnknownCameraPrior) in place of the calibration.
   bool find_camera = false;
-  // Time from the first row of a frame to the last; corners move meanwhile, with a velocity that
-  // the neighbouring frames show. Negative: rows are read from the bottom up. In portrait frames,
-  // columns are read from left to right, or the other way if negative. 0: unknown.
+  // Readout time, from the first row of a frame to the last. Corners move meanwhile, with a
+  // velocity that the neighbouring frames show. Negative: rows are read from the bottom up. In
+  // portrait frames, columns are read from left to right, or from right to left if negative. 0:
+  // unknown.
   double rolling_shutter_s = 0.0;
   // Estimate that time if it is unknown and the frames determine it.
   bool estimate_rolling_shutter = true;

@@ -47,10 +47,10 @@ struct ViewParameters {
   Eigen::Vector3d InCam(const CornerObservation& corner) const {
     return rotation_matrix * CornerOfBlock(marker, corner.slot) + translation;
   }
-  // What is added to the projection of a corner to give its residual.
+  // The term that is added to the projection of a corner to give its residual.
   Eigen::Vector2d OffsetPx(const CornerObservation& corner) const {
     const Eigen::Vector2d offset_px = inset_px * corner.inset_direction - corner.x_in_image_px;
-    // Most images are photographs or of cameras without a rolling shutter.
+    // Most images are photographs, or come from cameras without a rolling shutter.
     if (rolling_shutter_s == 0) return offset_px;
     return offset_px + Shift(corner).value_px;
   }
@@ -70,8 +70,8 @@ struct ViewParameters {
 
 using ViewJacobians = std::array<JacobianMap, 5>;
 
-// Sets two rows of the derivatives of one corner's residual by all blocks but the intrinsics, from
-// those by its image point and by its position in the camera frame.
+// Sets two rows of the derivatives of one corner's residual with respect to all blocks but the
+// intrinsics, from those with respect to its image point and its position in the camera frame.
 void SetDerivatives(const ViewParameters& view, const CornerObservation& corner, int row,
                     const Eigen::Matrix2d& by_image, const Eigen::Matrix<double, 2, 3>& by_cam,
                     ViewJacobians* jacobians) {

@@ -33,7 +33,7 @@ struct CornerObservation {
   double sigma_px = 1.0;  // of each coordinate
   // The movement of the corner by an apparent inset of one px: the sum of the unit vectors in the
   // image that point from the corner along its two sides. The sides of a square seen straight on
-  // shrink by twice the inset. Zero where a neighbouring corner is unknown.
+  // shrink by twice the inset. Zero if a neighbouring corner is unknown.
   Eigen::Vector2d inset_direction = Eigen::Vector2d::Zero();
   RowMotion motion;
 };

@@ -75,7 +75,7 @@ MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Mo
                                 const MarkerWeights& weights, MarkerState* state);
 
 // Minimizes until a step changes the cost by less than the fraction `function_tolerance`. Returns
-// the number of iterations. Throws DataError where no step can be computed.
+// the number of iterations. Throws DataError if no step can be computed.
 int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
                           MarkerProblem* problem);
 

@@ -57,9 +57,9 @@ Eigen::VectorXd OffsetsInMarkers(const MarkerState& state, Eigen::Index num_rows
   return offsets;
 }
 
-// The scale of the print, which scales all points, contains the error that the inset makes. Markers
-// keep their printed sides whatever the inset is, so that it only scales the distances between
-// them. `share` is its part of the variance assumed for that scale, `sigma` its own.
+// The scale of the print, which scales all points, includes the error due to the inset. Markers
+// keep their printed sides whatever the inset is, so the inset only scales the distances between
+// them. `share` is its share of the variance assumed for that scale, `sigma` its own sigma.
 void HoldSidesAgainstInset(const MarkerState& state, double share, double sigma,
                            const Eigen::VectorXd& inverse_root_of_scale, PointCovariance* points) {
   const Eigen::VectorXd offsets = OffsetsInMarkers(state, points->factor.rows());
@@ -127,7 +127,7 @@ Eigen::MatrixXd GlobalCovariance(const MarkerProblem& problem, const MarkerCovar
 }
 
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance) {
-  // All leverages add up to the number of parameters. The part of the priors is not determined by
+  // All leverages add up to the number of parameters. The share of the priors is not determined by
   // corners.
   double num_parameters = static_cast<double>(covariance.root.rows() + covariance.factor.rows());
   for (const ResidualJacobian& prior : jacobian.priors) {

@@ -94,8 +94,8 @@ NormalMatrix SumProducts(const MarkerJacobian& jacobian, int num_threads) {
 }
 
 // The lower root of the matrix that the global parameters have once the markers are eliminated.
-// Nothing where the markers leave one of them undetermined. Works in place: thousands of images
-// make matrices of gigabytes.
+// Returns nothing if the markers leave one of them undetermined. Works in place: thousands of
+// images make matrices of gigabytes.
 std::optional<Eigen::MatrixXd> RootOfGlobals(Eigen::MatrixXd globals, const RowMajorMatrix& factor,
                                              int num_threads) {
   const Eigen::VectorXd information = globals.diagonal();
@@ -276,7 +276,7 @@ double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jaco
   for (const auto& [column, derivatives] : jacobian.by_globals) {
     first = std::min<Eigen::Index>(first, column);
   }
-  // L^-1 by_globals^T, which is zero where by_globals begins with zeros.
+  // L^-1 by_globals^T, which is zero if by_globals begins with zeros.
   Eigen::MatrixXd by_globals = Eigen::MatrixXd::Zero(num_globals, num_rows);
   for (const auto& [column, derivatives] : jacobian.by_globals) {
     by_globals.middleRows(column, derivatives.cols()) += derivatives.transpose();

@@ -53,7 +53,7 @@ struct MarkerCovariance {
   }
 };
 
-// Nothing where the data leave a combination of parameters undetermined. Runs on up to
+// Returns nothing if the data leave a combination of parameters undetermined. Runs on up to
 // `num_threads` threads (0: one per core), which do not change the result.
 std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
                                                       int num_threads);

@@ -30,9 +30,9 @@ struct RowShift {
   Eigen::Vector2d value_px, by_shutter_px_s;
 };
 
-// To second order in the time between the two rows. The motion from frame to frame is not yet that
-// of the corner, because each frame shows the corner in another row and so at another time of the
-// frame.
+// Computes the shift to second order in the time between the two rows. The motion from frame to
+// frame differs from that of the corner, because each frame shows the corner in another row and
+// thus at another time within the frame.
 RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s);
 
 // 1 sigma of a coordinate of the shift, px, due to that of the velocity.

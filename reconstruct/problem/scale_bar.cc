@@ -18,7 +18,7 @@ Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   return vector;
 }
 
-// Adds one end of a bar. Returns false where corners of it are missing.
+// Adds one end of a bar. Returns false if corners of it are missing.
 bool AddEnd(const MarkerState& state, int marker_id, int corner, double sign, ScaleBar* bar) {
   const auto marker =
       std::find_if(state.markers.begin(), state.markers.end(),

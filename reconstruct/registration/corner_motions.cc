@@ -15,8 +15,8 @@ namespace {
 
 // Over a longer time, a hand-held camera may have reversed its motion.
 constexpr double kLongestStep_s = 0.15;
-// Number of frames before and after one that tell how its corners move. What more distant ones
-// would add is noise, or motion that has nothing to do with that in this frame.
+// Number of frames before and after a frame that contribute to the motion of its corners. More
+// distant ones would add noise, or motion that is unrelated to that in this frame.
 constexpr std::size_t kReach = 8;
 
 using RowMajorTracks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -57,8 +57,8 @@ struct MarkerMotion {
   double common_variance = 0.0;
 };
 
-// Nothing unless the marker is seen in four frames (in three where there are no more) and, where
-// there are such, before and after this one.
+// Returns nothing unless the marker is seen in four frames (or three, if there are no more), and
+// before and after this frame if there are such frames.
 std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, int marker_id,
                                           PlaceWeights* weights) {
   const std::size_t min_num_frames = std::clamp<std::size_t>(window.size(), 3, 4);
@@ -83,7 +83,7 @@ std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, int marker_
                       of_places.motion_variance};
 }
 
-// Nothing for fewer than three markers.
+// Returns nothing for fewer than three markers.
 std::optional<MotionField> FitField(const FrameDetections& frame,
                                     const std::vector<std::optional<MarkerMotion>>& measured) {
   constexpr std::size_t kMinNumMarkers = 3;
@@ -103,15 +103,15 @@ struct FrameMotion {
   std::vector<std::optional<MarkerMotion>> measured;  // by marker
   std::optional<MotionField> field;
 
-  // By how much marker `i` is faster than the field.
+  // The velocity of marker `i` relative to the field.
   Eigen::Vector2d OwnVelocity(std::size_t i) const {
     const Eigen::Vector2d place_px = CornerMean(image->detections.markers[i]);
     return (measured[i]->motion - field->At(place_px)).head<2>();
   }
 };
 
-// Variance of the coordinates of the markers' own velocities beyond noise; infinite where no frame
-// has more markers than it takes to determine the field.
+// Variance of the coordinates of the markers' velocities relative to the field, beyond noise;
+// infinite if no frame has more markers than are needed to determine the field.
 double OwnVariance(const std::vector<FrameMotion>& frames) {
   double sum_of_squares = 0.0, sum_of_noise = 0.0, sum_of_degrees = 0.0;
   for (const FrameMotion& frame : frames) {
@@ -133,7 +133,7 @@ double OwnVariance(const std::vector<FrameMotion>& frames) {
   return std::max(0.0, (sum_of_squares - sum_of_noise) / sum_of_degrees);
 }
 
-// Empty where the neighbouring frames show too few markers.
+// Empty if the neighbouring frames show too few markers.
 std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_variance) {
   std::vector<CornerMotion> motions;
   double common_variance = 0.0;  // the field's
@@ -143,8 +143,8 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
   for (std::size_t i = 0; i < frame.measured.size(); ++i) {
     const std::optional<MarkerMotion>& measured = frame.measured[i];
     if (!measured && !frame.field) return {};
-    // Of the marker's own velocity, what is known. Accelerations are too noisy for more than the
-    // field.
+    // The marker's velocity relative to the field, shrunk by its share of noise. Accelerations are
+    // too noisy to depart from those of the field.
     MotionVector own = MotionVector::Zero();
     double unknown_variance = std::isfinite(own_variance) ? own_variance : 0.0;
     if (measured) {
@@ -154,7 +154,7 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
       unknown_variance = (1.0 - noise_share) * noise;
     }
     for (const Eigen::Vector2d& x_px : frame.image->detections.markers[i].corners_in_image_px) {
-      // Within a marker, the field says how the velocity changes.
+      // Within a marker, the velocity changes as in the field.
       const MotionVector motion = frame.field ? frame.field->At(x_px) + own : measured->motion;
       motions.push_back({motion.head<2>(), motion.tail<2>(),
                          std::sqrt(common_variance + unknown_variance),
@@ -164,7 +164,7 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
   return motions;
 }
 
-// What the sensor has seen at one time, and the frames that show it: one, and those that repeat it.
+// One exposure of the sensor: the frame that shows it, and those that repeat that frame.
 struct Exposure {
   double time_s = 0.0;
   std::vector<const DatabaseImage*> frames;
@@ -208,8 +208,8 @@ FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx
   return window;
 }
 
-// The tracks of the markers that all frames of a window show, where the frame itself is neither its
-// first nor its last.
+// The tracks of the markers that all frames of a window show. Returns nothing if the frame itself
+// is the first or the last of the window.
 std::optional<TrackWindow> TracksIn(const FrameWindow& window) {
   if (window.size() < kMinTimesOfWindow || !(window.front().time_s < 0) ||
       !(window.back().time_s > 0)) {
@@ -240,7 +240,7 @@ std::optional<TrackWindow> TracksIn(const FrameWindow& window) {
   return tracks;
 }
 
-// From frames spread over the video. Markers that pass quickly are seen in a few frames only.
+// Uses windows spread over the video; smaller ones if no marker is seen throughout a larger one.
 TrackModel FitTrackModel(const std::vector<Exposure>& exposures) {
   constexpr std::size_t kMaxNumWindows = 200;
   const std::size_t stride = 1 + exposures.size() / kMaxNumWindows;

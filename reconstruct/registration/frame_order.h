@@ -13,8 +13,8 @@ namespace velamap {
 // database do not change the result.
 std::vector<const DatabaseImage*> CanonicalOrder(const std::vector<DatabaseImage>& images);
 
-// Tells whether the images are a video. Throws InputError where the option demands a video but
-// frame numbers are missing.
+// Tells whether the images are a video. Throws InputError if the option demands a video but frame
+// numbers are missing.
 bool UseTimeOrder(const std::vector<const DatabaseImage*>& images, FrameOrder order);
 
 // Index of the image that options.central_frame names. Throws InputError if there is no such image

@@ -25,10 +25,10 @@ class MotionField {
   static constexpr int kNumTerms = 5;  // without the constant
   using Terms = Eigen::Matrix<double, 1, kNumTerms>;
 
-  // Fits the motions of markers whose mean side is `side_px`. Combinations of terms that change
-  // more over half a side (RMS over the markers) than from marker to marker are left out, as across
-  // a row of markers: there the field would be extrapolated to the corners, which multiplies the
-  // noise of the motions. `motions` must not be empty.
+  // Fits the motions of markers whose mean side is `side_px`. Leaves out combinations of terms that
+  // change more over half a side (RMS over the markers) than from marker to marker. Across a single
+  // row of markers, for example, such terms would be extrapolated to the corners, which multiplies
+  // the noise of the motions. `motions` must not be empty.
   MotionField(const std::vector<PlacedMotion>& motions, double side_px);
 
   MotionVector At(const Eigen::Vector2d& x_in_image_px) const;

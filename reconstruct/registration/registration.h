@@ -44,9 +44,9 @@ struct RegisteredFrame {
   // kGlobal: of the reprojection errors, as lengths at the distance of the markers. kThesis: of the
   // alignment with the mean shape.
   double rms_error_m = 0.0;
-  // The number of the shape's markers that contradict the other frames: if no pose of the camera
-  // fits the frame, all that it shows; if too many are outliers for chance and false detections,
-  // those; otherwise 0.
+  // Number of the shape's markers that contradict the other frames: all that the frame shows if no
+  // pose fits it, or the outliers if there are more than chance and false detections explain;
+  // otherwise 0.
   int num_contradicting = 0;
 };
 

@@ -19,7 +19,7 @@ enum class FrameOrder {
   kUnordered,  // growing from the central frame
 };
 
-// How closely the thesis is followed where it leaves something to improve.
+// How closely to follow the thesis where its method can be improved.
 enum class ThesisVariant {
   kRobust,  // both poses of a marker, a search that adapts to the video, shape refined in rounds
   kExact,   // thesis 3.3 to 3.5 to the letter: thesis/README.md lists the differences
@@ -42,8 +42,8 @@ struct ThesisRegistrationOptions {
 };
 
 struct GlobalRegistrationOptions {
-  // Frames of a video that take part, chosen for the precision that they add to all markers. All
-  // photographs take part.
+  // Number of frames of a video that take part, chosen for the precision that they add to all
+  // markers. All photographs take part.
   int max_num_frames = 80;
   int num_starts = 4;  // pairs of frames from which a map is grown before the best map is kept
 };
@@ -54,7 +54,7 @@ struct RegistrationOptions {
   std::string central_frame;  // image name or frame number; empty: the best one is chosen
   int min_num_inliers = 2;    // minimum number of shared markers that agree to register a frame
   int min_num_frames = 2;     // minimum number of frames that see a marker
-  // Whether the cameras are a calibration, which may be the wrong one, or guesses.
+  // Whether the cameras are calibrated (possibly wrongly) rather than guessed.
   bool has_calibration = true;
   int random_seed = 0;
   int num_threads = 0;  // 0: one per core; never changes the result

@@ -50,8 +50,8 @@ std::optional<double> UsualStep(const std::vector<std::optional<FrameStep>>& ste
 }  // namespace
 
 std::vector<bool> FindRepeatedFrames(const std::vector<const DatabaseImage*>& frames) {
-  // Compression moves markers of a repeated frame by some hundredths of a pixel. A larger share
-  // would take frames in which a shaking camera turns back for repeated ones.
+  // Compression moves markers of a repeated frame by some hundredths of a pixel. With a larger
+  // share, frames in which a shaking camera turns back would be taken for repeated ones.
   constexpr double kMaxShare = 0.03;
   // Two pictures of the same scene have independent noise, and their markers are one sigma apart.
   constexpr double kMaxSigmas = 0.2;

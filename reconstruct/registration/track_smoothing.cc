@@ -20,8 +20,8 @@ Eigen::ArrayXd InUnits(const std::vector<double>& times_s, double unit_s) {
          unit_s;
 }
 
-// The covariance of two places of the motion this long after each other, as far as it differs from
-// that of a cubic polynomial, about which nothing is assumed; and its derivatives.
+// The covariance of two places of the motion at times this far apart, apart from a cubic
+// polynomial, about which nothing is assumed; and its derivatives.
 Eigen::ArrayXd Covariance(const Eigen::ArrayXd& times) { return times.abs().pow(7) / 10080; }
 Eigen::ArrayXd CovarianceRate(const Eigen::ArrayXd& times) {
   return times.abs().pow(5) * times / 1440;
@@ -100,8 +100,8 @@ DerivativeWeights WeighPlaces(const std::vector<double>& times_s, const TrackMod
 }
 
 TrackModel FitTrackModel(const std::vector<TrackWindow>& windows) {
-  // From places without errors to motions without accelerations over a dozen frames. A factor of
-  // four changes the shortest period that a spline follows by a fifth.
+  // The range extends from places without errors to motions without accelerations over a dozen
+  // frames. A factor of four changes the shortest period that a spline follows by a fifth.
   constexpr int kLeastExponent = -10, kLargestExponent = 13;
   std::vector<double> steps_s;
   for (const TrackWindow& window : windows) {

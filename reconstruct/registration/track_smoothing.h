@@ -28,9 +28,9 @@ struct DerivativeWeights {
   double motion_variance = 0.0;
 };
 
-// For places at these times, at least three. The weights for three or four are those of the
-// polynomial through them; for three, the variances are zero, because one more would be needed to
-// know them.
+// `times_s` holds at least three times. The weights for three or four places are those of the
+// polynomial through them. For three, the variances are zero, because it takes a fourth place to
+// estimate them.
 DerivativeWeights WeighPlaces(const std::vector<double>& times_s, const TrackModel& model);
 
 // Tracks of several points that are seen at the same times, at least kMinTimesOfWindow.

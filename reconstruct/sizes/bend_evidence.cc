@@ -33,7 +33,7 @@ ByLine RelativeShortenings(double length_m, const Eigen::Matrix2d& curvature_1_m
 BendEvidence FindBendEvidence(const MarkerState& state, const MarkerCovariance& covariance,
                               const std::map<int, Eigen::Matrix2d>& curvatures_1_m,
                               const MarkerAdjustmentOptions& options) {
-  // By line, for prints that are too wide by as much as they are too low.
+  // The effect, by line, of a print that is as much too wide as it is too low.
   const ByLine aspect = (ByLine() << 0.5, -0.5, 0.5, -0.5, 0, 0).finished();
   double squares = 0.0, products = 0.0, by_aspect = 0.0, block_variance = 0.0;
   Eigen::VectorXd by_factor = Eigen::VectorXd::Zero(covariance.factor.cols());

@@ -14,8 +14,8 @@
 namespace velamap {
 
 struct BendEvidence {
-  // Of the change of the outlines that follows from the curvature: 1 if all markers bend with their
-  // surface, 0 if they are stiff.
+  // The observed change of the outlines as a fraction of that predicted from the curvature: 1 if
+  // all markers bend with their surface, 0 if they are stiff.
   double share = 0.0;
   double sigma = 0.0;  // infinite without any markers
 };

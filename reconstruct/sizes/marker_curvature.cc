@@ -32,9 +32,9 @@ struct Curvature {
     return std::sqrt(2.0) * (from2_to4 - from1_to3) / 24;
   }
 
-  // Square of the bend of a line on the marker, as an angle, less its variance. The mean of a bent
-  // marker's corners lies inside the surface, by the sagittas of its two sides, so that the places
-  // of neighbours show a smaller radius.
+  // Square of the bend of a line on the marker, as an angle, minus its variance. The mean of a bent
+  // marker's corners lies inside the surface, by the sagittas of its two sides, so the places of
+  // the neighbours show a radius that is too small.
   double SquaredBend(const Eigen::Vector2d& line_m, double side_m) const {
     const Eigen::Vector2d direction = line_m.normalized();
     const Eigen::Vector3d by_second(direction.x() * direction.x(),
@@ -47,14 +47,14 @@ struct Curvature {
   }
 };
 
-// The surface of constant curvature through a marker that explains the neighbours. Their tilts and
-// heights, divided by their distances, are taken to be equally exact.
+// The surface of constant curvature through a marker that fits the neighbours best. Their tilts,
+// and their heights divided by their distances, count as equally precise.
 std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
                                      const std::vector<Rigid3>& world_from_neighbors) {
   constexpr double kMinCosine = 0.64;      // of the angle between neighbours, 50 degrees; others
                                            // are on another face
   constexpr double kMaxUnexplained = 0.3;  // of the squares
-  constexpr double kRidge = 1e-3;          // holds what neighbours in one line leave open
+  constexpr double kRidge = 1e-3;          // for what neighbours in one line leave open
   constexpr int kMinObservations = 6;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();

@@ -1,5 +1,5 @@
-// How much shorter the sides of markers are on curved surfaces: a side is printed along the
-// surface, and the corners at its ends are as far apart as its chord.
+// The shortening of the sides of markers on curved surfaces: a side is printed along the surface,
+// but the adjustment sees its chord, the straight distance between its corners.
 
 #pragma once
 
@@ -22,16 +22,16 @@ struct ChordSummary {
   std::map<int, Eigen::Matrix2d> curvatures_1_m;
 };
 
-// The pose of a marker by its corners. Nothing unless it has four that span a plane.
+// The pose of a marker from its corners. Returns nothing unless it has four that span a plane.
 std::optional<Rigid3> WorldFromMarker(const MarkerBlock& marker);
 
-// Sets the chords of all markers: their ratio is 1 - (a kappa)^2 / 24 for an arc of the printed
-// length a with the normal curvature kappa along the side. The curvature of a marker follows from
-// the places and tilts of its neighbours on the same part within four sides, which are tilted by
-// less than 50 degrees relative to it, by a least-squares fit, and its variance is subtracted from
-// its square. Sides stay as printed where a kappa is below 0.1, where there are no neighbours, on
-// parts that the layout calls rigid, whose faces may be flat, and where the neighbours contradict
-// one smooth surface, as at the edge between two walls.
+// Sets the chords of all markers. The ratio of chord to arc is 1 - (a kappa)^2 / 24, for an arc of
+// the printed length a with the normal curvature kappa along the side. The curvature of a marker
+// comes from a least-squares fit to the places and tilts of its neighbours: markers of the same
+// part that are within four sides and tilted by less than 50 degrees relative to it. The variance
+// of the curvature is subtracted from its square. Sides stay as printed if the product a kappa is
+// below 0.1, if there are no neighbours, on parts that the layout calls rigid, whose faces may be
+// flat, and if the neighbours contradict one smooth surface, as at the edge between two walls.
 ChordSummary SetChords(MarkerState* state);
 
 }  // namespace velamap

@@ -74,7 +74,7 @@ struct SizeScatter {
   double sum_of_squares = 0.0;
   double degrees_of_freedom = 0.0;
 
-  // As wide as few values may have hidden it.
+  // Widened by Student's t, because a few values may hide a larger scatter.
   double Widened() const {
     return StudentFactor(degrees_of_freedom) * std::sqrt(sum_of_squares / degrees_of_freedom);
   }
@@ -97,7 +97,7 @@ class IndependentDeviations {
       if (!is_left_out[i]) idxs.push_back(i);
     }
     const auto num = static_cast<Eigen::Index>(idxs.size());
-    // Times the roots of the numbers of sides, so that the print has the same variance for all.
+    // Multiplied by the roots of the numbers of sides, so that all have the same variance of print.
     Eigen::VectorXd roots(num), values(num);
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(num, num);  // the lower triangle
     for (Eigen::Index row = 0; row < num; ++row) {

@@ -1,5 +1,5 @@
-// How far the mean sides of markers deviate from the others, and how much of this image noise
-// explains.
+// How far the mean sides of markers deviate from those of the others, and how much of this is due
+// to image noise.
 
 #pragma once
 
@@ -28,7 +28,7 @@ struct MarkerSize {
   int num_sides = 0;
   double ratio = 0.0;
   double unevenness = 0.0;  // longest minus shortest side, divided by the printed length
-  // Of the ratio, without the errors that other markers share and without the print tolerance.
+  // Variance of the ratio, without the errors that other markers share and the print tolerance.
   double block_variance = 0.0;
   // The shared errors of the ratio: the factor of the covariance times the gradient of the ratio,
   // then the sigma of the inset. The dot product of two markers' vectors is their covariance.

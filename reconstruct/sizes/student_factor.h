@@ -1,4 +1,4 @@
-// How much wider an interval has to be whose sigma comes from few values.
+// The factor that widens an interval whose sigma comes from few values.
 
 #pragma once
 
