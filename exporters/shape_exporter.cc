@@ -200,7 +200,7 @@ ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
 std::vector<std::string> FrameWarnings(const ShapeExportReport& report, const Layout& layout,
                                        bool writes_files) {
   std::vector<std::string> warnings;
-  // Known points tell up from down by themselves.
+  // Known points distinguish up from down by themselves.
   const FrameAttempt measured = FrameOfKnownPoints(report.known_points);
   const bool is_measured = measured.frame && measured.frame->name == report.frame.name;
   const std::string doubt = is_measured ? "" : DoubtAboutSailUp(report.shape, layout);

@@ -55,7 +55,7 @@ struct ShapeExportReport {
   // does not depend on it, so callers ask twice: before they write, and after they have written
   // everything else but printed nothing.
   //
-  // The first one throws only where one of the outputs, files or folders, holds an earlier result,
+  // The first one throws only if one of the outputs, files or folders, holds an earlier result,
   // which may have the surface that this one lacks. Empty paths are ignored.
   void ThrowSurfaceErrorBeforeReplacing(const std::vector<std::filesystem::path>& outputs) const;
   void ThrowSurfaceError() const;

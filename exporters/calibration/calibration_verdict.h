@@ -14,7 +14,7 @@ namespace velamap {
 // with what to do.
 Verdict JudgeCalibration(const CameraCalibration& calibration);
 
-// Views that would make the calibration better, one sentence each; empty where nothing is missing.
+// Views that would make the calibration better, one sentence each; empty if nothing is missing.
 std::vector<std::string> AdvisedViews(const CameraCalibration& calibration);
 
 // `bent by 0.31 +- 0.02 % of its extent (RMS), ...`.

@@ -23,7 +23,7 @@ ClothOffsets OffsetsToCloth(const MarkerShape& shape, const Layout& layout,
     try {
       offsets_m.merge(OffsetsToCloth(FitSurface(CollectSurfaceInput(shape, part, up_in_shape))));
     } catch (const DataError&) {
-      // Its markers determine no surface, so that nothing says how the cloth bends.
+      // Its markers determine no surface, so the bend of the cloth is unknown.
     }
   }
   return offsets_m;

@@ -78,13 +78,13 @@ class AlignedNoise {
 
   // Variance, m^2, of a place along a direction, both in the frame of the reference. `own` is the
   // derivative of the place along the direction with respect to its corners while the alignment is
-  // held fixed. Nothing if the covariance lacks one of the corners.
+  // held fixed. Returns nothing if the covariance lacks one of the corners.
   std::optional<double> VarianceAt(const Eigen::Vector3d& x_in_reference_m,
                                    const Eigen::Vector3d& direction,
                                    const CornerGradient& own) const;
 
-  // Covariance of the centre of a marker, m^2, in the frame of the reference. Nothing if the
-  // covariance lacks a corner of the marker or of the alignment.
+  // Covariance of the centre of a marker, m^2, in the frame of the reference. Returns nothing if
+  // the covariance lacks a corner of the marker or of the alignment.
   std::optional<Eigen::Matrix3d> CenterCovariance(const MarkerInReference& marker) const;
 
  private:
@@ -102,8 +102,8 @@ class AlignedNoise {
 };
 
 // Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame of
-// the reference. `reference` is null for a surface, which counts as exact. Nothing if a covariance
-// lacks a corner of the marker or of the alignment.
+// the reference. `reference` is null for a surface, which counts as exact. Returns nothing if a
+// covariance lacks a corner of the marker or of the alignment.
 std::optional<Eigen::Matrix3d> DifferenceCovariance(const MarkerInReference& marker,
                                                     const AlignedNoise& shape,
                                                     const AlignedNoise* reference);

@@ -23,10 +23,9 @@ class SurfaceNoise {
                const AlignmentSensitivity& sensitivity, const PointCovariance& covariance)
       : fit_(fit), noise_(sensitivity, whose, covariance) {}
 
-  // Variance of the surface at a place along a unit vector: from the noise of its markers, from
-  // the effect of that noise on the alignment, and from smoothing
-  // (SurfaceDependence::VarianceWith). Nothing if a sigma that it depends on is unknown, or if the
-  // surface interpolates.
+  // Variance of the surface at a place along a unit vector: from the noise of its markers, from the
+  // effect of that noise on the alignment, and from smoothing (SurfaceDependence::VarianceWith).
+  // Returns nothing if a sigma that it depends on is unknown, or if the surface interpolates.
   std::optional<double> VarianceAt(double u, double v, const Eigen::Vector3d& direction) const {
     const std::optional<SurfaceDependence> dependence = DependenceAt(fit_, u, v);
     if (!dependence) return std::nullopt;

@@ -27,7 +27,7 @@ struct Deflection {
   Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
   double distance_m = 0.0;                             // its component along the reference's normal
   // Sigma of the distance: from everything that the sigmas of the markers include (also the errors
-  // that they share), from the alignment, and from the smoothing of the surfaces. Nothing where the
+  // that they share), from the alignment, and from the smoothing of the surfaces. Nothing if the
   // markers have none.
   std::optional<double> sigma_m;
 
@@ -41,7 +41,7 @@ struct DeflectionField {
   // On the reference, in its frame. Normals point to the side that the markers of the reference, or
   // the faces of the design, face.
   SurfaceGrid reference;
-  // One per point of the grid; nothing where the shape is more than EdgeOptions::tolerance_mm
+  // One per point of the grid; nothing if the shape is more than EdgeOptions::tolerance_mm
   // beyond the edge of the design.
   std::vector<std::optional<Deflection>> deflections;
 };

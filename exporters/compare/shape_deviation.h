@@ -71,8 +71,8 @@ struct ShapeDeviation {
   std::vector<MarkerDeviation> markers;  // whole markers (of both shapes), by id
   Statistics distance_m;                 // signed, without markers beside the surface
   Statistics difference_m;               // lengths of the vectors; only for two shapes
-  // Of the surface along its normal, which the sigmas of the markers include; 0 if it is exact or
-  // there is none.
+  // Sigma of the surface along its normal, which the sigmas of the markers include; 0 if the
+  // surface is exact or there is none.
   double surface_sigma_m = 0.0;
   int num_significant = 0;  // above kSignificantSigmas
   int num_with_sigma = 0;
@@ -107,7 +107,8 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
                                double surface_sigma_m = 0.0);
 
 // The factor, 1000 or 0.001, by which to multiply a mesh that was read in mm instead of m or the
-// other way round. Nothing unless the diagonals of shape and mesh differ by a factor above 100.
+// other way round. Returns nothing unless the diagonals of shape and mesh differ by a factor above
+// 100.
 std::optional<double> UnitHint(const MarkerShape& shape, const MeshDistance& mesh);
 
 }  // namespace velamap

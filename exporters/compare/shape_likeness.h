@@ -30,8 +30,8 @@ struct ShapeLikeness {
 
 // Measures the part that agrees best, because the other parts may have been trimmed. Parts are
 // those of `layout` or, without markers there, those of the shape; with fewer than three whole
-// markers in common in each of them, all markers are one part. Nothing if these are fewer than
-// three, too.
+// markers in common in each of them, all markers are one part. Returns nothing if these are fewer
+// than three, too.
 std::optional<ShapeLikeness> MeasureLikeness(const MarkerShape& shape, const MarkerShape& reference,
                                              const Layout& layout);
 

@@ -18,7 +18,7 @@ struct SurfaceDeviation {
   std::string part;
   TriangleMesh mesh;  // of the compared shape, in the reference's frame
   // One per vertex: along the normal of the reference, positive on the side to which it points;
-  // nothing where the vertex is more than EdgeOptions::tolerance_mm beyond the edge of the
+  // nothing if the vertex is more than EdgeOptions::tolerance_mm beyond the edge of the
   // reference.
   std::vector<std::optional<double>> distance_m;
   Statistics statistics_m;  // of the known distances

@@ -11,7 +11,7 @@ namespace velamap {
 namespace {
 
 // The number of a part among those with lines, from 1. A part whose surface fails has no field, so
-// the place of a field among the others does not tell its part.
+// the index of a field does not give its part.
 int NumberOfPart(const std::string& name, const Layout& layout) {
   int number = 0;
   for (const LayoutPart& part : layout.parts) {

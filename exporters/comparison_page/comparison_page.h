@@ -42,7 +42,7 @@ void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out);
 //              luff of the reference along its chord, mm); the first one is the reference's
 //   markers    id, part, corners, centre (m), distances: for each shape distance_mm, sigma_mm,
 //              significance, beside_mm, is_beside, or null
-//   surfaces   for each shape vertices (m, on the reference), triangles, distances_mm (null where
+//   surfaces   for each shape vertices (m, on the reference), triangles, distances_mm (null if
 //              unknown)
 std::string ComparisonJson(const ComparisonPageInput& input);
 

@@ -19,7 +19,7 @@ bool IsByChance(int num_significant, int num_all, double largest_sigmas) {
   return num_significant <= std::ceil(kByChance * num_all) && largest_sigmas < kNeverByChance;
 }
 
-// The difference that tells a sailmaker most: camber, draft or twist, where one of them is
+// The most informative difference for a sailmaker: camber, draft or twist, if one of them is
 // significant.
 const SectionDifference* ForTheFirstLine(const std::vector<const SectionDifference*>& significant) {
   for (const char* number : {"camber_percent", "twist_deg", "draft_position_percent"}) {

@@ -21,7 +21,7 @@ struct DatumPoint {
   std::array<std::optional<double>, 3> known_m;  // in the known frame
   double sigma_m = 0.0;                          // of each known coordinate
 
-  // Nothing unless all three coordinates are known.
+  // Returns nothing unless all three coordinates are known.
   std::optional<Eigen::Vector3d> KnownPosition() const;
 };
 

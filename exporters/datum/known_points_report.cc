@@ -70,7 +70,7 @@ std::string ShortText(const ComparedPoint& point) {
                      kMmPerM * point.difference_m.norm(), point.sigmas_off);
 }
 
-// The compared point that is farthest off; a failed check is worse than any other point. Null where
+// The compared point that is farthest off; a failed check is worse than any other point. Null if
 // nothing checks the points: as many coordinates as the frame needs always fit.
 const ComparedPoint* WorstPoint(const KnownPointFit& fit) {
   const auto badness = [](const ComparedPoint& point) {

@@ -45,7 +45,7 @@ Coefficients TermsAt(const Eigen::Vector2d& place) {
 }
 
 // Fits heights of the second degree to the mesh around the foot, up to the distance of the corners.
-// A single facet at the foot would not tell the bend, and at the border of the mesh there is a
+// A single facet at the foot would not show the bend, and at the border of the mesh there is a
 // surface on one side only.
 Coefficients FitHeights(const MeshDistance& mesh, const TangentFrame& frame) {
   constexpr int kNumRings = 3, kNumDirections = 16;
@@ -70,7 +70,8 @@ Coefficients FitHeights(const MeshDistance& mesh, const TangentFrame& frame) {
     }
   }
   if (num_samples < normal.rows()) return Coefficients::Zero();
-  // Keeps terms at zero that the samples do not determine, as along a strip. Hardly changes others.
+  // Keeps terms at zero that the samples leave undetermined, as along a strip; hardly changes
+  // others.
   normal.diagonal().array() += 1e-8 * num_samples;
   return normal.ldlt().solve(right);
 }

@@ -171,7 +171,8 @@ void TakeItems(std::uint64_t count, std::string_view* bytes, std::vector<Item>* 
   bytes->remove_prefix(count * sizeof(Item));
 }
 
-// Nothing unless the bytes are a whole mesh: a damaged file may have made the child write anything.
+// Returns nothing unless the bytes are a whole mesh: a damaged file may have made the child write
+// anything.
 std::optional<TriangleMesh> MeshFromBytes(std::string_view bytes) {
   TriangleMesh mesh;
   std::array<std::uint64_t, 2> counts{};

@@ -13,9 +13,9 @@ namespace velamap {
 // The program warns of coarser steps.
 inline constexpr double kMaxFloatStep_m = 1e-5;
 
-// Distance between neighbouring floats at the coordinate that is farthest from the origin, m, where
-// it exceeds kMaxFloatStep_m and what the same points would have in a frame that begins at one of
-// them; otherwise nothing. It is the same in any unit of length.
+// Distance between neighbouring floats at the coordinate that is farthest from the origin, m.
+// Returns nothing unless it exceeds kMaxFloatStep_m and the distance that the same points would
+// have in a frame that begins at one of them. It is the same in any unit of length.
 std::optional<double> CoarseFloatStep_m(const std::vector<Eigen::Vector3d>& points_m);
 
 }  // namespace velamap

@@ -47,7 +47,7 @@ std::vector<QuadratureNode> SpanQuadrature(const Eigen::ArrayXd& knots);
 
 struct SurfaceJet {
   Eigen::Vector3d x, x_u, x_v, x_uu, x_uv, x_vv;  // m, and per unit of parameter
-  Eigen::Vector3d normal;                         // unit; zero where S_u x S_v vanishes
+  Eigen::Vector3d normal;                         // unit; zero if S_u x S_v vanishes
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);

@@ -14,8 +14,8 @@ namespace velamap {
 // kGood up to `good`, kCheck up to `bad`, else kBad.
 ReportStatus LowIsGood(double value, double good, double bad);
 
-// Judged by the effect: a different calibration does no harm if it hardly moves the shape. kNone
-// where it was not tested.
+// Judges the calibration by its effect: a different one does no harm if it hardly moves the shape.
+// kNone if it was not tested.
 ReportStatus StatusOf(const CalibrationEvidence& evidence);
 
 // Names the parameter that explains most, and the options that refine it.
@@ -26,8 +26,8 @@ std::string CalibrationAdvice(const CalibrationEvidence& evidence);
 // advice.
 std::string FoundCameraAdvice(const std::vector<std::string>& warnings);
 
-// Whether another calibration would explain the residuals. None without the marker-aware
-// adjustment, which tests it. Where no calibration was given, the advice is about the pictures.
+// Whether another calibration would explain the residuals. Returns nothing without the marker-aware
+// adjustment, which tests it. If no calibration was given, the advice is about the pictures.
 std::optional<KeyNumber> CalibrationNumber(const ReportInput& input);
 
 // None for one unchanged camera.

@@ -68,7 +68,7 @@ struct ReportDesign {
   std::string name;
   int num_markers = 0;       // over the surface of the design
   double distance_mm = 0.0;  // of these from it after the best fit, rms
-  // By section of the sail, in its plane, x along the chord; empty where the design has none.
+  // By section of the sail, in its plane, x along the chord; empty if the design has none.
   std::vector<std::vector<Eigen::Vector2d>> profiles_m = {};
 };
 

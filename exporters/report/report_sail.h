@@ -10,8 +10,8 @@
 
 namespace velamap {
 
-// The front view has the leveled viewing direction of the central camera. Nothing for a frame
-// without an up direction.
+// The front view has the leveled viewing direction of the central camera. Returns nothing for a
+// frame without an up direction.
 std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model& metric_model);
 
 // Adds sections, rigs, surfaces, their notes and the design, each only if there is one. Surfaces of

@@ -28,7 +28,7 @@ bool DistanceDecides(const ScaleAudit& audit) {
                      });
 }
 
-// Whether parts differ by more than the scale's sigma says and no distance decides between them.
+// Whether parts differ by more than the scale's sigma and no distance decides between them.
 bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   if (!audit.parts_disagree || DistanceDecides(audit)) return false;
   return std::any_of(audit.parts.begin(), audit.parts.end(), [&scale](const GroupScale& part) {
@@ -51,8 +51,8 @@ std::string PrintText(const ScaleEstimate& scale) {
       100 * scale.print_sigma);
 }
 
-// How far the markers are from their lengths in the layout where the model was adjusted with other
-// lengths; empty where it was not, or where measured distances explain it.
+// How far the markers are from their lengths in the layout, if the model was adjusted with other
+// lengths; empty if it was not, or if measured distances explain it.
 std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& audit) {
   constexpr double kMaxScaleSigmas = 3.0;
   const double sigma =
@@ -68,8 +68,8 @@ std::string ContradictionOfLayout(const ScaleEstimate& scale, const ScaleAudit& 
       std::abs(audit.deviation) / sigma);
 }
 
-// A spread of more than the noise of the corners can only come from the markers. Without sigmas of
-// the corners, nothing else is known to explain it.
+// If the spread exceeds the noise of the corners, only the markers can cause it. Without sigmas of
+// the corners, no other cause is known.
 std::string SpreadAdvice(const ScaleAudit* audit, const std::vector<std::string>& warnings) {
   const bool is_noise_known =
       audit != nullptr && !audit->markers.empty() && audit->markers.front().sigma.has_value();

@@ -10,18 +10,18 @@
 
 namespace velamap {
 
-// `audit` and `uncertainty` may be null. A warning of weak geometry (weak_geometry.h) is the advice
-// where the noise of the corners explains that the markers' sizes differ.
+// `audit` and `uncertainty` may be null. If the noise of the corners explains why the markers'
+// sizes differ, the advice is the warning of weak geometry (weak_geometry.h).
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                       const AdjustmentUncertainty* uncertainty,
                       const std::vector<std::string>& warnings);
 
 // Distances measured by hand. Those that the adjustment used prove nothing, unless it left them
-// out. Nothing for a layout without distances.
+// out. Returns nothing for a layout without distances.
 std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit);
 
-// Coordinates measured by hand: checks decide, then points that contradict the others. Nothing for
-// a layout without known points.
+// Coordinates measured by hand: checks decide, then points that contradict the others. Returns
+// nothing for a layout without known points.
 std::optional<KeyNumber> KnownPointsNumber(const KnownPointFit& fit);
 
 }  // namespace velamap

@@ -80,7 +80,7 @@ struct MissingSection {
   bool is_by_layout = false;
 };
 
-// What the markers of a part with lines say about the rig; nothing where they do not determine it.
+// What the markers of a part with lines say about the rig; nothing if they do not determine it.
 struct RigNumbers {
   std::string part;
   // Largest distances of the luff from the straight line between its ends, in the plane of that

@@ -126,9 +126,9 @@ double Score(const std::vector<Smoother>& smoothers, double smoothing) {
   return residual / std::pow(std::max(num_values - trace, 1e-9), 2);
 }
 
-// The curves whose points decide on the smoothing. Without sigmas, a curve of four points says
-// nothing: all that a parabola leaves of them is one residual per axis, and its cross-validation
-// error is the same for every smoothing. Where all curves are so short, all get a nominal sigma.
+// The curves whose points decide on the smoothing. Without sigmas, a curve of four points has no
+// vote: a parabola leaves one residual per axis, and its cross-validation error is the same for
+// every smoothing. If all curves are so short, all get a nominal sigma.
 std::vector<CurveData> VotersAmong(const std::vector<CurveData>& curves) {
   if (curves.front().covariance_m2.size() > 0) return curves;
   std::vector<CurveData> voters;

@@ -23,8 +23,8 @@ struct RobustFit {
 constexpr double kMaxRobustSigmas = 3.0;
 
 // Fits values = design * coefficients + noise, starting from the smallest sum of absolute
-// residuals. `sigmas` belong to the values; 0 is unknown. Nothing if there are fewer values than
-// coefficients or if the used values do not determine the coefficients.
+// residuals. `sigmas` belong to the values; 0 is unknown. Returns nothing if there are fewer values
+// than coefficients or if the used values do not determine the coefficients.
 std::optional<RobustFit> FitRobustly(const Eigen::MatrixXd& design, const Eigen::VectorXd& values,
                                      const Eigen::VectorXd& sigmas);
 

@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-// The mean of fewer markers says little about their part.
+// The mean of fewer markers is no evidence about their part.
 constexpr int kMinMarkersOfPart = 3;
 
 std::vector<MeasuredMarkerSides> MeasureForShape(const MarkerShape& shape, const Layout& layout,

@@ -25,8 +25,8 @@ int NumChecks(const ScaleAudit& audit);
 // Number of distances that are in the shape.
 int NumDistancesFound(const ScaleAudit& audit);
 
-// Of the distances in the shape, the one that is off by most sigmas. A check that fails comes
-// before a scale bar that the adjustment used, however far off that is. Null if there is none.
+// Among the distances in the shape, the one that is off by the most sigmas. A failed check takes
+// precedence over a scale bar that the adjustment used, however far off that is. Null if none.
 const CheckedDistance* WorstDistance(const ScaleAudit& audit);
 
 // `12-45.3 +15.10 mm (+5.2 sigmas)` for a distance that is in the shape.

@@ -22,8 +22,8 @@ struct PartAxes {
   bool is_flat = true;                  // if false, the normal is the mean of the markers' normals
 };
 
-// `ids` are whole markers of the part, at least two. Nothing if the line from the first to the last
-// is along the normal.
+// `ids` are whole markers of the part, at least two. Returns nothing if the line from the first to
+// the last is along the normal.
 std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<int>& ids);
 
 // Index of the axis with the smallest angle to the direction, up to its sign, other than `except`

@@ -32,8 +32,8 @@ std::vector<const MarkerLine*> LinesWithEnds(const MarkerShape& shape,
 LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line);
 
 // Unit vector from foot to head of the part: along its vertical lines or, without any, from its
-// lowest to its highest horizontal line. Markers at the ends may be missing. Nothing if the markers
-// do not determine it.
+// lowest to its highest horizontal line. Markers at the ends may be missing. Returns nothing if the
+// markers do not determine it.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const LayoutPart& part);
 // The same by the order of the horizontal lines alone, whichever way the vertical ones run.
 std::optional<Eigen::Vector3d> LinesUp(const MarkerShape& shape, const LayoutPart& part);
@@ -45,12 +45,12 @@ std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& la
 bool PointsDown(const Eigen::Vector3d& direction, const Eigen::Vector3d& up);
 
 // Why the first part with horizontal lines may be listed from head to foot, with the remedy: most
-// of its whole markers point down (PointsDown()), by SailUp(). Empty if they do not. Markers may
-// also be glued upside down, so that this decides nothing.
+// of its whole markers point down (PointsDown()), by SailUp(). Empty if they do not. This is no
+// proof, because markers may also be glued upside down.
 std::string DoubtAboutSailUp(const MarkerShape& shape, const Layout& layout);
 
-// Unit vector up the luff: the line of least squares through the first markers of the horizontal
-// lines of the part, those that are whole. Nothing with fewer than two.
+// Unit vector up the luff: the least-squares line through the first markers, if whole, of the
+// horizontal lines of the part. Returns nothing with fewer than two.
 std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const LayoutPart& part);
 
 // Unit vector from luff to leech, the mean over the horizontal lines of the first part with lines.

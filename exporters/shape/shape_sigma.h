@@ -38,18 +38,17 @@ PointGradient AreaGradient(const ShapeMarker& marker);
 // Whether the covariance is given (not null) and has all points of the gradient.
 bool HasPointsOf(const PointGradient& gradient, const PointCovariance* covariance);
 
-// 1 sigma of the function with this gradient, in its unit. Nothing without a covariance (null),
-// with one that lacks a point, and for an empty gradient.
+// 1 sigma of the function with this gradient, in its unit. Returns nothing without a covariance
+// (null), with one that lacks a point, and for an empty gradient.
 std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGradient& gradient);
 
 // 1 sigma of a corner or the centre along x, y and z, m.
 std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int marker_id,
                                           int corner);
 
-// 1 sigma that each coordinate of the points is taken to have where nothing else says how exact
-// they are, m: 0.1 mm on a sail of 3 m. It makes a curve or a surface fair that few points would
-// let swing between them, and hides no shape that markers show. Ten times more or less hardly
-// changes the fit.
+// 1 sigma, m, that is assumed for each coordinate of the points if none is known: 0.1 mm on a sail
+// of 3 m. It keeps a curve or a surface from swinging between few points, and hides no shape that
+// markers show. Ten times more or less hardly changes the fit.
 double NominalSigma(const Eigen::Matrix3Xd& points_in_shape_m);
 
 // The covariance without the errors that markers share, such as the scale; nothing for null.

@@ -84,9 +84,10 @@ struct FittedSurface {
   double num_effective_parameters = 0.0;
   // Per coordinate of the poles (surface_smoother.h); empty if the markers are interpolated.
   Eigen::MatrixXd pole_covariance_m2;
-  // The same in two parts, for noise that the markers share: the corners of the markers of the fit
-  // (0 for a marker without corners) with what each adds to the poles (poles x points, rows sum to
-  // 1), and what comes from the smoothing alone.
+  // The same covariance in two parts, for noise that the markers share. `points` are the corners of
+  // the markers of the fit (corner 0: a marker without corners). The first matrix holds what each
+  // of them adds to the poles (poles x points, rows sum to 1), the second what the smoothing alone
+  // adds.
   std::vector<CornerId> points;
   Eigen::MatrixXd pole_by_point, smoothing_covariance_m2;
   std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
@@ -104,23 +105,23 @@ struct SurfaceDependence {
   // it, independent from marker to marker, and from what the smoothing may have flattened.
   double noise_variance_m2 = 0.0, smoothing_variance_m2 = 0.0;
 
-  // Of the surface, where the sigmas of its markers give `by_markers_m2` instead of independent
-  // noise. Where the residuals show more noise than that, theirs counts.
+  // Variance of the surface if the noise of its markers, which they may share, contributes
+  // `by_markers_m2`; the residuals count instead if they show more noise.
   double VarianceWith(double by_markers_m2) const {
     return std::max(by_markers_m2, noise_variance_m2) + smoothing_variance_m2;
   }
 };
-// Nothing if the markers are interpolated.
+// Returns nothing if the markers are interpolated.
 std::optional<SurfaceDependence> DependenceAt(const FittedSurface& fit, double u, double v);
 
 // Whether the surface's normals point to the side that most of the markers face. `shape` holds the
 // markers of the fit.
 bool FacesLikeMarkers(const FittedSurface& fit, const MarkerShape& shape);
 
-// Throws InputError for bad options and for an extension beyond its limit. Throws DataError where
-// the markers do not determine a surface: fewer than two lines with three whole markers, two
-// markers in one place, lines that cross or run in opposite directions, or a surface that
-// oscillates between its markers.
+// Throws InputError for bad options and for an extension beyond its limit. Throws DataError if the
+// markers do not determine a surface: fewer than two lines with three whole markers, two markers in
+// one place, lines that cross or run in opposite directions, or a surface that oscillates between
+// its markers.
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options = {});
 
 }  // namespace velamap

@@ -72,8 +72,9 @@ Eigen::Vector2d WalkFrom(const SplineSurface& surface, const Eigen::Vector2d& fr
   return uv;
 }
 
-// The end of a row: continued from its outer point as it runs there. A near neighbour would
-// multiply its own error, so the direction comes from one at least as far away as the end is.
+// The end of a row, which continues from its outer point in the direction of the row there. A near
+// neighbour would multiply its own error, so the direction comes from one that is at least as far
+// away as the end.
 Eigen::Vector2d EndOf(const SplineSurface& surface, const SurfaceParameters& parameters,
                       std::size_t outer_idx, std::size_t opposite_idx, double length_m) {
   const auto& observations = parameters.observations;

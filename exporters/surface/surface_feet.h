@@ -23,10 +23,10 @@ SurfaceOutline OutlineOf(const SplineSurface& surface, SurfaceParameters paramet
 // 1 again. The chord length of a marker depends on where its line begins; its foot does not.
 void MoveMarkersToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 
-// For interpolating surfaces, where the markers on lines keep their chord lengths. The first
-// function moves the corners of each marker around the marker's place; they must follow a smooth
-// surface, because on one that oscillates they have no feet. The second moves the markers on no
-// line of the fit to their feet, but none beyond the edge.
+// For interpolating surfaces, whose markers on lines keep their chord lengths. The first function
+// moves the corners of each marker around the marker's place; they must follow a smooth surface,
+// because on one that oscillates they have no feet. The second moves the markers that are on no
+// line of the fit to their feet, but not beyond the edge.
 void MoveCornersAroundMarkers(const SplineSurface& surface, SurfaceParameters* parameters);
 void MoveMarkersBetweenLinesToFeet(const SplineSurface& surface, SurfaceParameters* parameters);
 

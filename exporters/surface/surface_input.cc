@@ -13,7 +13,7 @@
 namespace velamap {
 namespace {
 
-// A fourth of the variance of the corners' own errors.
+// The variance of a tilt is a fourth of that of the corners' own errors.
 std::optional<double> TiltSigma(const ShapeMarker& marker, double center_sigma_m) {
   constexpr double kMinOfCenter = 0.05;  // rounded sigmas, or the same for corners and centre
   double sum_m2 = 0.0;

@@ -53,7 +53,7 @@ void CheckExtension(const SurfaceOptions& options,
                                std::floor(max_mm), size_name));
 }
 
-// Of a point of a row that is no marker.
+// Whether the point of a row, which is not a marker, lies on an edge with `is_seen`.
 bool IsSeen(const SurfaceEdges& edges, const std::vector<SurfaceRow>& rows, std::size_t row,
             std::size_t point) {
   if (rows[row].is_edge) return row == 0 ? edges.foot.is_seen : edges.head.is_seen;

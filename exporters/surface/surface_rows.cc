@@ -148,7 +148,7 @@ SurfaceRow MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
   return row;
 }
 
-// Its u follow from where its ends are beside the nearest line.
+// The u of its points follow from where its ends are beside the nearest line.
 SurfaceRow MakeEdgeRow(const std::string& name, const Polyline& edge, const SurfaceRow& line) {
   SurfaceRow row{name, true, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge)};
   row.length_m = row.us.back();
@@ -176,7 +176,7 @@ Eigen::Vector3d PointAtU(const SurfaceRow& row, double u) {
   return row.points[k - 1] + part * (row.points[k] - row.points[k - 1]);
 }
 
-// The smooth curve through the points as a polyline with short steps. It goes on straight beyond
+// The smooth curve through the points as a polyline with short steps. It continues straight beyond
 // them by their mean distance.
 Polyline SmoothEdge(const Polyline& points) {
   constexpr int kEdgeLineDegree = 3, kStepsPerPoint = 8;

@@ -44,7 +44,7 @@ std::vector<SurfaceRow> MakeSurfaceRows(const std::vector<SurfaceLine>& lines,
                                         const SurfaceOptions& options,
                                         std::vector<std::string>* notes);
 
-// Mean distance between two neighbouring rows over their common range of u. Throws DataError where
+// Mean distance between two neighbouring rows over their common range of u. Throws DataError if
 // they cross or run in opposite directions.
 double MeanDistance(const SurfaceRow& lower, const SurfaceRow& upper);
 

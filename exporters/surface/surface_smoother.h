@@ -31,8 +31,8 @@ struct SurfaceTerm {
   double weight = 1.0;          // positive; 1 / sigma^2
 };
 
-// Of the penalties on bends along the lines and across them: the decimal logarithms of the ratios
-// of the traces of penalty and data term.
+// Weights of the penalties on bends along the lines and across them: the decimal logarithms of the
+// ratios of the traces of penalty and data term.
 struct SmoothingWeights {
   double along = 0.0, across = 0.0;
 };

@@ -64,7 +64,7 @@ OutlineCurve FitCurve(std::vector<Eigen::Vector2d> places, CurveFit fit) {
   return curve;
 }
 
-// Between the places that are known, an edge is a smooth curve in space, not in u and v, which may
+// Between the known places, an edge is a smooth curve in space rather than in u and v, which may
 // grow unevenly. Places are (v, u) of an edge from foot to head.
 std::vector<Eigen::Vector2d> FillEdge(const SplineSurface& surface,
                                       const std::vector<Eigen::Vector2d>& uvs) {
@@ -143,8 +143,8 @@ class OutlineMap {
   OutlineCurve foot_, head_, luff_, leech_;
 };
 
-// Lines of a lower degree than cubic ones in v, from two or three rows, are cubic between an
-// outline that is curved.
+// If v has a degree below three, because there are only two or three rows, raises it to cubic,
+// because the outline is curved.
 SplineSurface WithoutPoles(const SplineSurface& surface) {
   SplineSurface result = surface;
   if (result.degree_v < kEdgeDegree) {
