@@ -29,8 +29,8 @@ struct BoardCalibration {
   CameraCalibration calibration;
 };
 
-// Throws InputError and DataError where ImportMarkers() and CalibrateCamera() do, and DataError
-// where no dictionary finds markers.
+// Throws InputError and DataError as ImportMarkers() and CalibrateCamera() do, and DataError if no
+// dictionary finds markers.
 BoardCalibration CalibrateWithBoard(const BoardCalibrationOptions& options);
 
 }  // namespace velamap

@@ -28,8 +28,8 @@ namespace {
 constexpr int kNumFramesWithPixels = 10;
 constexpr std::size_t kFewMarkers = 4;
 
-// The layout of the best dictionary; of none where no dictionary finds markers. The pictures that
-// were tried may lack an id, so all of the family are searched for.
+// The layout of the best dictionary; an empty one if none finds markers. The pictures that were
+// tried may lack an id, so all ids of the family are searched for.
 Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
   const std::vector<DictionaryHint> hints = FindDictionaries(clip, *detection);
   if (hints.empty()) return {};
@@ -105,8 +105,8 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    // The estimate takes longer than all else, and only what measures the markers' sides needs it:
-    // without it, they contradict the layout.
+    // The estimate takes longer than everything else, and only measuring the markers' sides needs
+    // it: without it, they contradict the layout.
     importer.detection.estimate_formation =
         detection.estimate_formation && (MeasuresPrecision() || options_.proposes_layout);
     importer.num_threads = options_.num_threads;
@@ -168,7 +168,8 @@ class Checker {
     }
   }
 
-  // Of the prints, for a layout; of the pictures, where the clip hardly shows any marker.
+  // Looks for faulty prints if a layout is proposed, and for faulty pictures if hardly any marker
+  // shows.
   void FindFaults(const ClipFrames& clip, const DetectionsByName& by_name, const Layout& layout,
                   const ArucoDetectionOptions& detection) {
     ClipFacts& facts = check_.facts;

@@ -40,7 +40,7 @@ struct ClipCheck {
   std::optional<LayoutProposal> proposal;
 };
 
-// Throws InputError where OpenFrameSource() and MakeFrameDetector() do.
+// Throws InputError as OpenFrameSource() and MakeFrameDetector() do.
 ClipCheck CheckClip(const ClipCheckOptions& options);
 
 }  // namespace velamap

@@ -77,7 +77,7 @@ struct ClipFacts {
   }
 
   Statistics side_px;
-  // Medians over the markers; nothing where no side could be measured.
+  // Medians over the markers; nothing if no side could be measured.
   std::optional<double> black, white;        // grey levels, 0 to 255
   std::optional<double> blur_px, motion_px;  // sigma of the blur; path during the exposure
   // The fraction of the measured markers that are overexposed or pale, and the ids for which most

@@ -20,7 +20,7 @@ struct ClipFrames {
 VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames);
 
 // Reads up to `max_num_frames` frames: the first ones that `video` chooses, or photographs at equal
-// distances. Throws InputError where OpenFrameSource() does and if no frame can be read.
+// distances. Throws InputError as OpenFrameSource() does and if no frame can be read.
 ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& video,
                           int max_num_frames, int num_threads);
 

@@ -33,7 +33,7 @@ void CollectIds(const std::vector<DatabaseImage>& images, const Layout& layout, 
   std::set<int> foreign;
   for (const DatabaseImage& image : images) {
     for (const MarkerDetection& marker : image.detections.markers) {
-      // Without the ids of a layout, nothing else tells a misread id from a marker.
+      // Without the ids of a layout, rarity alone distinguishes a misread id from a marker.
       if (!layout.HasMarkers() && rare.count(marker.marker_id) > 0) continue;
       ++facts->num_frames_of_id[marker.marker_id];
     }

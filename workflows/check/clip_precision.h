@@ -16,7 +16,7 @@ namespace velamap {
 double LargestAngle(const std::vector<Eigen::Vector3d>& directions);
 
 // Registers and adjusts the images of a database, and finds the cameras before if it has no
-// calibration. Throws DataError where the images give no shape or no cameras.
+// calibration. Throws DataError if the images give no shape or no cameras.
 ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
                                int num_threads);
 

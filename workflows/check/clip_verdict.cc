@@ -211,7 +211,7 @@ class Judge {
     JudgeSteadiness(precision.steadiness);
   }
 
-  // A wrong camera leaves few markers and images that agree, whose residuals say little.
+  // A wrong camera leaves few markers and images that agree, whose residuals prove little.
   void JudgeAgreement(const ClipPrecision& precision) {
     constexpr int kManyMarkers = 8;
     const auto num_seen = static_cast<int>(
@@ -281,7 +281,7 @@ Verdict JudgeClip(const ClipFacts& facts) { return Judge(facts).Take(); }
 std::string SizeHint(const ClipFacts& facts) {
   const double side_px = facts.side_px.count == 0 ? 0.0 : facts.side_px.median;
   if (side_px < kBadSidePx || side_px >= kGoodSidePx) return "";
-  // The reconstruction of these frames knows better than the rule of thumb.
+  // The reconstruction of these frames is more reliable than the rule of thumb.
   const std::string size =
       facts.precision ? fmt::format("the size is known to {:.2f} % (1 sigma) from these frames",
                                     100 * facts.precision->scale_sigma)

@@ -20,7 +20,7 @@ struct MarkerLight {
 };
 
 // From the grey levels across the middle of each side, of a marker with a black border on white
-// paper. Nothing where a side is too near the border of the image, or without contrast.
+// paper. Returns nothing if a side is too near the border of the image, or without contrast.
 std::optional<MarkerLight> MeasureLight(const cv::Mat& gray, const QuadCorners& corners_px);
 
 }  // namespace velamap

@@ -13,8 +13,8 @@ namespace velamap {
 // Reads a shape.csv, or the one in a folder, with the joint uncertainty of the model in
 // `uncertainty_path` or, without it, in sparse/0 beside the folder of shape.csv; otherwise with the
 // sigmas of the file, with a warning if the model there is another one. `option` is the name of the
-// option that gives `uncertainty_path`, for messages. Throws InputError where the files cannot be
-// read or do not belong to each other.
+// option that gives `uncertainty_path`, for messages. Throws InputError if the files cannot be read
+// or do not belong to each other.
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option);
 

@@ -15,8 +15,8 @@ struct MarkerGeneratorCommandOptions : CommandOptions {
   PrintOptions print;
 };
 
-// The options of a sail. Its hull is a common option here, because the example has one; the short
-// help of shoot_planner, which has them too, is long enough without it.
+// The options of a sail. Its hull is a common option here, because the example has one; in
+// shoot_planner, which has the same options, it would make the short help too long.
 OptionGroup SailAndHull(SailPlacementOptions* options) {
   OptionGroup group = DescribeOptions(options);
   for (Option& option : group.options) {

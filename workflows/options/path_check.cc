@@ -50,7 +50,7 @@ void AddPictures(const std::string& used_by, const fs::path& path, UsedPaths* pa
   }
 }
 
-// The file that is meant where an option is left out. Next to phone.yml, *.html is phone.html.
+// The default file of an option that is left out. Next to phone.yml, *.html is phone.html.
 fs::path DefaultPath(const Option& option) {
   const fs::path beside = AbsoluteFolder(*option.beside);
   const std::string& name = option.name_beside;

@@ -78,14 +78,14 @@ OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 // Whether any option says what the markers are.
 bool HasMarkerOptions(const MarkerOptions& options);
 
-// Nothing without a path. Throws InputError where ReadCalibration() does.
+// Returns nothing without a path. Throws InputError as ReadCalibration() does.
 std::optional<Camera> LoadCalibration(const PathOptions& paths);
 
 // Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
 // needed) is given, and where ReadLayout() does.
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
 
-// The same; nothing where no option says what the markers are.
+// The same; nothing if no option says what the markers are.
 std::optional<Layout> LoadGivenLayout(const MarkerOptions& options, bool with_dictionary);
 
 // `path`, or the shape.csv in it if it is a folder.
@@ -100,7 +100,7 @@ std::filesystem::path ModelFolderOfShape(const std::string& path);
 PriorShape LoadPriorShape(const std::string& prior_shape_path);
 
 // Called once the options are set: completes the options of a stage from the command's options and
-// the files that they name, and checks them. Throws InputError where a file or a value is bad.
+// the files that they name, and checks them. Throws InputError if a file or a value is bad.
 void CompleteImporter(const CommandOptions& options, MarkerImporterOptions* importer);
 void CompleteRegistration(const GeneralOptions& options, RegistrationOptions* registration);
 

@@ -23,7 +23,7 @@ struct PlanPrecision {
 };
 
 // Draws by `options.seed` which markers are found and the errors of their corners. Throws DataError
-// where the views give no shape.
+// if the views give no shape.
 PlanPrecision SimulatePlan(const PlannedSurface& surface, const Camera& camera,
                            const PlannedPath& path, const ShootPlanOptions& options);
 

@@ -41,8 +41,8 @@ Sightings CountSightings(const ShootPlan& plan, const PlannedPath& path) {
   return sightings;
 }
 
-// What to do about markers that are too small. From closer by they would be larger, which does not
-// help where they leave the picture.
+// What to do about markers that are too small. They would be larger from closer by, which does not
+// help if they leave the picture.
 std::string RemedyForSmallMarkers(const ShootPlan& plan, double outside_share) {
   constexpr double kCloser = 0.8, kHardlyMore = 0.01;
   PlannedPath closer = plan.path;
@@ -53,7 +53,7 @@ std::string RemedyForSmallMarkers(const ShootPlan& plan, double outside_share) {
          "film with more pixels, or print larger markers";
 }
 
-// The markers that the adjustment does not reach, sorted by the cause: each has another remedy.
+// The markers that the adjustment does not reach, sorted by cause, because each has its own remedy.
 void JudgeMissingMarkers(const ShootPlan& plan, const Sightings& sightings,
                          const std::string& remedy_for_small, VerdictReasons* reasons) {
   const auto number_of = [](const std::map<int, int>& numbers, int marker_id) {

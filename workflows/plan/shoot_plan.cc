@@ -55,8 +55,8 @@ bool HoldsAllMarkers(const PlannedSurface& surface, const Camera& camera, const 
 }
 
 // The nearest distance at which all markers are in the picture and nearly as many are found along
-// the arc as at the best such distance. Where the markers are far too small from there, the sail
-// has to be filmed in parts, and the best distance of all counts.
+// the arc as at the best such distance. If the markers are far too small from there, the sail has
+// to be filmed in parts, and the best of all distances is taken.
 double ChooseDistance(const PlannedSurface& surface, const Camera& camera, PlannedPath path) {
   constexpr double kNearest = 0.3, kFarthest = 60.0, kStep = 1.08, kNearlyAll = 0.98;
   constexpr double kFarTooFew = 0.5;  // of those that the best distance finds

@@ -53,7 +53,7 @@ struct ShootPlan {
   std::vector<PlannedShutter> shutters;
   std::vector<PlannedVariant> variants;  // the plan itself is the first
 
-  std::optional<PlannedRecommendation> recommended;  // nothing where no path was found to be better
+  std::optional<PlannedRecommendation> recommended;  // nothing if no path was found to be better
 
   const PlannedVariant& plan() const { return variants.front(); }
 };

@@ -66,8 +66,8 @@ class Corrector {
     });
   }
 
-  // The markers of the row; those that the clip does not show stay after the ones that precede them
-  // in the layout.
+  // Writes the markers of the row. Those that the clip does not show stay after the ones that
+  // precede them in the layout.
   void WriteLine(const ComparedLine& line) {
     Ids ids = line.row, not_found;
     auto place = ids.begin();  // behind the last marker of the layout's line
@@ -104,7 +104,7 @@ class Corrector {
     }
   }
 
-  // The part of most markers of a group; null where the layout names none of them.
+  // The part of most markers of a group; null if the layout names none of them.
   LayoutPart* PartOf(const RowGroup& group) {
     std::map<std::string, int> votes;
     const auto vote = [&](const Ids& ids) {
@@ -126,8 +126,8 @@ class Corrector {
     return &*part;
   }
 
-  // Markers that the layout does not name: rows of them become lines, others go to the part that
-  // stands there, or to a new one.
+  // Adds the markers that the layout does not name: rows of them become lines, others go to the
+  // part next to which they stand, or to a new one.
   void AddUnnamed() {
     Ids added_alone;
     for (const RowGroup& group : groups_) {
@@ -162,7 +162,7 @@ class Corrector {
     if (!added_alone.empty()) AddPart(std::move(added_alone));
   }
 
-  // A part of its own, for markers that stand with none that the layout names.
+  // Adds a part of its own for markers that stand with none that the layout names.
   void AddPart(Ids ids) {
     LayoutPart part;
     part.name = UnusedName("unnamed", given_.parts);
@@ -192,7 +192,7 @@ class Corrector {
                       [](const MarkerLine& x, const MarkerLine& y) { return x.name == y.name; });
   }
 
-  // Edges with a distance for each line do not survive a change of the lines.
+  // Also removes edges with a distance for each line if the lines have changed.
   void RemoveEmptyLines() {
     for (std::size_t i = 0; i < given_.parts.size(); ++i) {
       LayoutPart& part = proposal_.layout.parts[i];
@@ -213,7 +213,8 @@ class Corrector {
     }
   }
 
-  // An edge whose line or points the part has no longer, or whose line is no outer one any more.
+  // Removes an edge whose line or points are no longer in the part, or whose line is no longer an
+  // outer one.
   void RemoveLostEdges(LayoutPart* part) {
     const std::set<int> ids = MarkerIds(*part);
     const auto is_in = [](const std::vector<MarkerLine>& lines, const std::string& name) {

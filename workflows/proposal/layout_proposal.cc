@@ -41,8 +41,8 @@ std::vector<MarkerLine> Named(char letter, std::vector<std::vector<int>> rows) {
   return lines;
 }
 
-// The end of the rows that is the luff. The luff is the straighter edge: the rows begin above each
-// other there, and become shorter along the leech.
+// Whether the rows end at the luff on their right. The luff is the straighter edge: the rows begin
+// above each other there, and become shorter along the leech.
 bool IsLuffOnTheRight(const std::string& part, const RowGroup& rows,
                       std::vector<std::string>* notes) {
   constexpr double kCertain = 0.05;  // cosine: 3 degrees

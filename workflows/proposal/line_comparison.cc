@@ -84,7 +84,7 @@ void Match(const std::vector<Ids>& rows, const Ids& seen, std::vector<ComparedLi
   }
 }
 
-// A layout may name the marker at a crossing on one of the two lines only. Where it names another
+// A layout may list the marker at a crossing on only one of the two lines. If it lists another
 // marker of the crossing line there, that one is wrong.
 void SettleCrossings(const std::vector<ComparedLine>& lines, ComparedLine* line) {
   Ids row;

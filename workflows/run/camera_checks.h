@@ -22,7 +22,7 @@ constexpr const char* kOrWithCalibration = "; or import the images with the came
 // FindCameras() of reconstruct/camera_search.h. `guesses` are the cameras of a database without a
 // calibration; a focal length that EXIF claims is compared with what the images show. The corners
 // of `images` are moved to where the fit would have found them with these cameras
-// (CorrectForLensBend). Throws DataError where the images do not tell.
+// (CorrectForLensBend()). Throws DataError if the images do not determine the cameras.
 std::map<CameraId, Camera> FindUnknownCameras(const std::map<CameraId, Camera>& guesses,
                                               const Layout& layout,
                                               const CornerErrors& corner_errors,

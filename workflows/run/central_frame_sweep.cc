@@ -174,8 +174,8 @@ class Sweep {
     Write(*row, report, result, Judge(report, result.steadiness, num_warnings));
   }
 
-  // The verdict on one central frame. The log also holds the warnings of the central frames before
-  // it, so only those count that all share, and those from `first_own` on, which are its own.
+  // The verdict on one central frame. The log also holds the warnings of earlier central frames, so
+  // only those that all frames share count, and this frame's own, which begin at `first_own`.
   Verdict Judge(const ShapeExportReport& report, const SteadinessVerdict& steadiness,
                 std::size_t first_own) const {
     ReportInput input = MakeReportInput(report, layout_, steadiness);

@@ -38,7 +38,7 @@ void FindLeftOut(SeedResult* seed) {
   }
 }
 
-// Nothing for photographs.
+// Returns nothing for photographs.
 std::optional<ReportClip> ClipOf(const std::vector<DatabaseImage>& images) {
   std::map<int, double> time_of_s;  // by frame number
   for (const DatabaseImage& image : images) {

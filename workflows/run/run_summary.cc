@@ -125,7 +125,7 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
   if (!report.notes.empty()) out << fmt::format("sections: {}\n", fmt::join(report.notes, "; "));
 }
 
-// All surfaces in one line. What there is to say about them stands in the report and in the log.
+// All surfaces in one line. Notes about them are in the report and in the log.
 void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
   std::vector<std::string> texts;
   for (const SailSurface& surface : shape.sail.surfaces) {

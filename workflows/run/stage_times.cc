@@ -35,8 +35,8 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports KiB
 }
 
-// Nothing without frames and below a millisecond, where the clocks give no rate. Parts run in
-// parallel and wait for each other, so their rate is by CPU time.
+// Returns nothing without frames and below a millisecond, where the clocks give no rate. Parts run
+// in parallel and wait for each other, so their rate is by CPU time.
 std::optional<double> FramesPerSecond(const StageTime& time) {
   constexpr double kMinSeconds = 1e-3;
   const double seconds = time.part_of.empty() ? time.wall_s : time.cpu_s;
