@@ -8,7 +8,7 @@
 
 namespace velamap {
 
-// The calibration, scaled to the frame's size. Where the calibration is for upright pictures and
+// The calibration, scaled to the frame's size. If the calibration is for upright pictures and
 // the pixels of a photograph are stored on their side, it is turned as EXIF says. Without a
 // calibration, UnknownCamera() with the focal length that EXIF claims. Throws InputError, naming
 // the image, for a calibration of another aspect ratio. Thread-safe.

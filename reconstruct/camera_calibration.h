@@ -50,7 +50,7 @@ struct CameraCalibration {
   int num_outliers = 0;
   Statistics error_px;  // lengths of the residuals
   BoardFlaws board;
-  // Time from the first row of a frame to the last, and its sigma, which is 0 if the time was not
+  // Readout time, from the first row of a frame to the last, and its sigma; a sigma of 0: not
   // estimated.
   double rolling_shutter_s = 0.0, rolling_shutter_sigma_s = 0.0;
   std::vector<std::string> warnings;

@@ -17,7 +17,7 @@ constexpr std::size_t kManyEmptyParts = 3;              // of nine
 constexpr double kGoodSigma = 0.003, kBadSigma = 0.02;  // of the focal length
 constexpr double kGoodCenterSigma = 0.003;              // of the picture's larger side
 constexpr double kGoodUnseenPx = 0.5, kBadUnseenPx = 2.0;
-// Where residuals that lie close together share this much of the error, the model lacks something.
+// If residuals that lie close together share this much of the error, the model lacks something.
 constexpr double kMaxPatternShare = 0.6, kMaxPatternPx = 0.05;
 constexpr std::size_t kFewViews = 10;
 constexpr double kMaxOutliers = 0.1;  // share

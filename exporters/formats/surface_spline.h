@@ -51,7 +51,7 @@ struct SurfaceJet {
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
-// Unit length. Where the surface degenerates to a point, the normal of a neighbouring point.
+// Unit length. If the surface degenerates to a point, the normal of a neighbouring point.
 Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v);
 
 double SurfaceArea(const SplineSurface& surface);  // m^2

@@ -70,7 +70,7 @@ void EndSide(const EdgeMembers& edge, std::optional<double> SurfaceLine::*offset
   }
 }
 
-// `has_line`: the line from which `offset_m` counts is one of the surface.
+// `has_line`: whether the surface has the line from which `offset_m` is measured.
 void EndHeight(const EdgeMembers& edge, const std::optional<double>& offset_m, bool has_line,
                const SurfaceInput& input, const SurfaceOptions& options, SortedInput* sorted,
                SurfaceOptions* ends) {

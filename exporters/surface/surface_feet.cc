@@ -116,8 +116,8 @@ std::vector<Eigen::Vector2d> BesideRow(const SplineSurface& surface,
   return places;
 }
 
-// Whether the end of a row shows where luff or leech are. Where these are known, foot and head need
-// not reach them. Where foot or head are close to a line, their ends would turn the edge round.
+// Whether the end of a row shows where luff or leech are. If these are known, foot and head need
+// not reach them. If foot or head are close to a line, their ends would turn the edge round.
 bool ShowsSide(const SurfaceParameters& parameters, const ObservedEdge& edge,
                const std::vector<Eigen::Vector2d>& row_ends, std::size_t row) {
   constexpr double kNear = 0.25;  // of the mean distance of the rows

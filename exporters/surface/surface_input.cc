@@ -129,7 +129,7 @@ void OrderFromLuffToLeech(SurfaceInput* input) {
   }
 }
 
-// Where the lines named as foot or head are not the outer ones of this shape.
+// Drops and notes the offset of a foot or head whose line is not the outer one of this shape.
 void CheckOuterLines(const LayoutPart& part, SurfaceInput* input) {
   const auto check = [](const char* name, const ClothEdge& edge, const SurfaceLine& outer,
                         std::optional<double>* offset_m, std::string* note) {

@@ -34,7 +34,7 @@ struct ObservedRow {
   bool is_edge = false;  // foot or head, where they are given
 };
 
-// Luff or leech. Where it is given, some of its points are observations, neighbours in the list.
+// Luff or leech. If it is given, some of its points are observations, neighbours in the list.
 struct ObservedEdge {
   // Given, or offset from the lines. Otherwise the surface ends at the ends of all rows.
   bool is_known = false;

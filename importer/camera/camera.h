@@ -69,11 +69,11 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
                                             const Eigen::Vector2d& x_in_image_px);
 
 // Distance of the image's farthest corner from the optical axis, as a tangent (the length of the
-// undistorted ray). Where the distortion cannot be inverted there, the length of the distorted ray.
+// undistorted ray). If the distortion cannot be inverted there, the length of the distorted ray.
 double MaxRayLength(const Camera& camera);
 
 // Whether rays farther from the optical axis are seen farther from the principal point, in every
-// direction and up to the image's border. Where they are not, the distortion folds over and belongs
+// direction and up to the image's border. If they are not, the distortion folds over and belongs
 // to no lens.
 bool HasMonotonicDistortion(const Camera& camera);
 

@@ -21,7 +21,7 @@ namespace velamap {
 struct Chessboard {
   int num_columns = 0, num_rows = 0;
 
-  // Where both numbers are odd or both are even, the board looks the same when it is turned by half
+  // If both numbers are odd or both are even, the board looks the same when it is turned by half
   // a turn; where they are equal and even, by a quarter. It is then taken to be held upright,
   // turned by less than 90 (45) degrees.
   bool LooksTheSameTurned() const { return (num_columns + num_rows) % 2 == 0; }

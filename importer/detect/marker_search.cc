@@ -176,7 +176,7 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   }
 }
 
-// Searches the regions. Where a region cuts off pixels on which a marker depends, searches around
+// Searches the regions. If a region cuts off pixels on which a marker depends, searches around
 // the marker again.
 std::vector<MarkerQuad> SearchRegions(const Search& search, const std::vector<cv::Rect>& regions,
                                       bool looks_again) {

@@ -23,7 +23,7 @@ using State = FormationState;
 constexpr double kQuietZoneSigma = 0.25;
 
 // Fits the samples with a usual camera but several values of gamma and sharpening, and returns the
-// fit with the least noise; without samples if no fit succeeds. Where white is clipped, a start
+// fit with the least noise; without samples if no fit succeeds. If white is clipped, a start
 // with little sharpening does not reach the minimum of a camera that sharpens strongly.
 State BestStart(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 const ImageFormationParameters& formation, const FitWorkers& workers) {

@@ -58,8 +58,8 @@ double ReadOffset(const YamlItem& item) {
   return offset_m;
 }
 
-// The line of luff or leech must be vertical; that of foot or head must be the outermost horizontal
-// one. The surface ends at it, or `offset` beyond.
+// The line of luff or leech must be vertical; that of foot or head must be the first or the last
+// horizontal one. The surface ends at it, or `offset` beyond.
 void CheckEdgeLine(const YamlItem& item, const std::string& name, const LayoutPart& part,
                    EdgeKind kind) {
   const auto is_it = [&](const MarkerLine& line) { return line.name == name; };

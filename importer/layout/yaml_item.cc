@@ -37,7 +37,7 @@ YAML::Node LoadYaml(const std::string& path, const std::string& text) {
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& exception) {
-    // Where a tab is to blame, the parser may give up one line later.
+    // If a tab is to blame, the parser may give up one line later.
     const int tab_line = LineIndentedByTab(text, exception.mark.line + 1);
     if (tab_line >= 0) {
       throw InputError(fmt::format(

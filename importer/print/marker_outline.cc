@@ -34,7 +34,7 @@ Sides FindSides(const cv::Mat& cells) {
   return sides;
 }
 
-// Removes and returns the side that continues one with the direction `from`. Where two cells touch
+// Removes and returns the side that continues one with the direction `from`. If two cells touch
 // only at a corner, two sides start. The right turn then stays with the same cell.
 Direction TakeNext(const GridPoint& point, Direction from, Sides* sides) {
   const auto it = sides->find(point);

@@ -117,7 +117,7 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, 
   return fit;
 }
 
-// The largest allowed movement of a corner; a fit that moves it farther has failed. Where cells are
+// The largest allowed movement of a corner; a fit that moves it farther has failed. If cells are
 // small, blur and a narrow quiet zone on dark ground pull the outline of the search inwards by up
 // to two pixels per side. The fit of the whole marker recovers from this, because it knows all
 // cells; the fits of single sides do not.

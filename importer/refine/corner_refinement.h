@@ -3,7 +3,7 @@
 //
 // cv::cornerSubPix pulls the corners of a marker inwards by 0.1 to 0.4 px, which becomes a scale
 // error of 0.4 to 6 % when the scale comes from the marker's side. A marker is fitted as a whole
-// (pattern_fit.h). Where that fails, each side is modelled as a step edge blurred by a Gaussian
+// (pattern_fit.h). If that fails, each side is modelled as a step edge blurred by a Gaussian
 // (edge_fit.h), whose place, bend, blur and grey levels are fitted by least squares to the pixels
 // within a band around the side, and neighbouring sides intersect in the corners.
 

@@ -43,7 +43,7 @@ class MarkerAdjuster {
   void AdjustToCorners();
 
   // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the
-  // shutter's time in `begin` and adjusts from there again.
+  // readout time in `begin` and adjusts from there again.
   static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
 
   // With find_camera, after AdjustToCorners(): takes the model that explains the images best.

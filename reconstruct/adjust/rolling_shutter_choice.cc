@@ -15,7 +15,7 @@ namespace velamap {
 namespace {
 
 // No sensor with a rolling shutter reads faster. Cloth that flaps or bends may look like a shorter
-// time.
+// readout time.
 constexpr double kFastest_s = 1e-3;
 
 // Removes corners that fitted only while the motion counted as a part of their errors.

@@ -118,7 +118,7 @@ class FrameMarkers {
 
 RansacOptions SamplingOptions(const std::vector<KnownMarker>& known, std::uint32_t random_seed) {
   RansacOptions options{kMinTriples, kMaxTriples, random_seed};
-  // Where a marker has two places, samples use one of them only, and the inlier ratio says less
+  // If a marker has two places, samples use one of them only, and the inlier ratio says less
   // about the number of samples needed.
   const bool is_clear = std::all_of(known.begin(), known.end(), [](const KnownMarker& marker) {
     return marker.places->size() == 1;

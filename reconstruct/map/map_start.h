@@ -28,8 +28,8 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
 double ExplainedObservations(const MapProblem& problem, const MapSolution& solution);
 
 // The solution with reversed relief: all depths are mirrored at the plane of the markers, and the
-// cameras rotated accordingly. Where perspective is weak both explain the images nearly equally
-// well, and an adjustment does not lead from one to the other.
+// cameras rotated accordingly. If perspective is weak, both explain the images nearly equally well,
+// and an adjustment does not lead from one to the other.
 MapSolution ReversedRelief(const MapSolution& solution);
 
 }  // namespace velamap

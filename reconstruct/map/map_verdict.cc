@@ -70,7 +70,7 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
 // 1 sigma of the centre in its least certain direction, for fixed frames. The errors of the four
 // corners in one view are taken as one error: those of the pose, the lens and the cloth move them
 // together, and sigma_px does not contain them. With independent errors, half of this sigma would
-// be enough. Where the frames look from one side, the distance follows from the marker's size in
+// be enough. If the frames look from one side, the distance follows from the marker's size in
 // the image. The error of its print is the same fraction in all frames: one unknown with a prior,
 // which is eliminated. However many frames look from one side, the distance is no more certain than
 // the print.

@@ -40,7 +40,7 @@ struct AdjustmentUncertainty {
   // estimated.
   double apparent_inset_px = 0.0;
   double apparent_inset_sigma_px = 0.0;
-  // Time from the first row of an image to the last. A sigma of 0: not estimated.
+  // Readout time, from the first row of an image to the last. A sigma of 0: not estimated.
   double rolling_shutter_s = 0.0;
   double rolling_shutter_sigma_s = 0.0;
   // The markers bend with a curved surface, so their sides are chords (SetChords()).

@@ -8,7 +8,7 @@
 //   pose         7      cam_from_world while the middle row is read: quaternion x y z w, then m
 //   inset        1      apparent inset of all corners, px
 //   intrinsics   3..12  parameters of one camera, in COLMAP's order
-//   shutter      1      time from the first row of an image to the last, s
+//   shutter      1      readout time, from the first row of an image to the last, s
 //   print scale  1      scale of all printed sides, minus 1
 //   part scale   1      the same for the sides on one part of the layout, in addition
 // clang-format on

@@ -20,7 +20,7 @@
 namespace velamap {
 namespace {
 
-// Prior of the time that a camera takes from the first row of an image to the last.
+// Prior of the readout time of a camera, from the first row of an image to the last.
 constexpr double kRollingShutterSigma_s = 0.03;
 
 int SlotOf(const MarkerBlock& marker, int corner) {

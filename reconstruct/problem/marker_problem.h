@@ -29,7 +29,7 @@ struct MarkerWeights {
   // 1 sigma of the scale of the print, as a fraction, that a contradiction between scale bars and
   // markers requires; 0 without a contradiction.
   double print_scale_by_bars = 0.0;
-  // The time from the first row of an image to the last is a parameter instead of an option.
+  // The readout time is a parameter instead of an option.
   bool frees_rolling_shutter = false;
   // 1 sigma of the scale of each part's prints around the scale of all; 0: parts agree.
   double part_scale_sigma = 0.0;

@@ -38,7 +38,7 @@ struct MarkerState {
   std::vector<MarkerBlock> markers;  // by ascending id
   std::vector<ImageBlock> images;    // in the order of the model
   std::map<CameraId, std::vector<double>> intrinsics;
-  double rolling_shutter_s = 0.0;  // from the first row of an image to the last
+  double rolling_shutter_s = 0.0;  // readout time, from the first row of an image to the last
   double inset_px = 0.0;
   double print_scale = 0.0;
   // Scale of the prints of each part, minus 1, in addition to print_scale.

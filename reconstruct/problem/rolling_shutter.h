@@ -1,6 +1,6 @@
-// How a rolling shutter displaces corners: the rows of a frame are read one after the other, from
-// the first to the last in rolling_shutter_s, while the corners move. The time of a frame is that
-// of its middle row.
+// How a rolling shutter displaces corners: the rows of a frame are read one after the other while
+// the corners move. rolling_shutter_s is the readout time, from the first row to the last; the time
+// of a frame is that of its middle row.
 
 #pragma once
 

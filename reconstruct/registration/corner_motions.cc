@@ -48,7 +48,7 @@ class PlaceWeights {
 };
 
 // The motion of the mean of a marker's corners. Motions of single corners are twice as noisy, and
-// noise in the velocities makes the estimated shutter time too short.
+// noise in the velocities makes the estimated readout time too short.
 struct MarkerMotion {
   MotionVector motion;
   // Variances of the velocity: due to the errors of the corners, which differ between markers, and

@@ -26,7 +26,7 @@ struct SchurSummary {
 
 // Minimizes over all parameter blocks that are not constant. These are `eliminated`, the blocks
 // that the Schur complement eliminates (markers), no two of which may share a residual, and `kept`.
-// Where the result is not usable, all values stay as they are.
+// If the result is not usable, all values stay as they are.
 //
 // The same input gives the same bytes if the eliminated blocks are elements of one array: Ceres
 // orders them by address. It runs on one thread, because with several threads its elimination adds

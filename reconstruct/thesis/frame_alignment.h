@@ -20,7 +20,7 @@ struct FrameAlignment {
 bool IsOutlier(const FrameAlignment& alignment, int marker_id);
 
 // Thesis, equation 3.1: samples triples of marker centres and estimates the transformation from the
-// centres of all inliers. Where fewer than four markers are shared or their centres are collinear,
+// centres of all inliers. If fewer than four markers are shared or their centres are collinear,
 // hypotheses come from the corners of single markers instead, one for each of their pose solutions,
 // and the corners of all inliers give the transformation. Returns nothing if fewer than
 // min_num_inliers agree: one marker determines the transformation, a second one confirms it.

@@ -32,7 +32,7 @@ std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, FrameN
   return {static_cast<int>(begin - frames.begin()), static_cast<int>(end - frames.begin())};
 }
 
-// The thesis aligns every frame with the central one. Where the camera has moved so far that no
+// The thesis aligns every frame with the central one. If the camera has moved so far that no
 // frame of a window aligns with it, `extended` takes its place: the markers of the central frame
 // and of the frames found so far.
 struct Search {

@@ -45,7 +45,7 @@ struct SelectedFrame {
 };
 
 // Thesis section 3.4.1: skips s frames from the central frame, takes the frame within m frames of
-// there that has the most RANSAC inliers, and continues from it, n times on each side. Where no
+// there that has the most RANSAC inliers, and continues from it, n times on each side. If no
 // frame of a window aligns with the central frame, the window is skipped; ThesisVariant::kRobust
 // first aligns it with the markers of all frames found so far. `frames` are sorted by frame_number.
 // The result does not contain the central frame.

@@ -22,7 +22,7 @@ namespace velamap {
 struct ClipPart {
   double begin_s = 0.0, end_s = 0.0;
   int first_frame = 0, last_frame = 0;
-  std::string lacks{};  // why it does not do for a reconstruction of its own; empty if it does
+  std::string lacks{};  // why it does not suffice for a reconstruction; empty if it does
   int num_markers = 0;  // that at least two of its frames show
   std::optional<double> parallax_deg{};  // as in ClipPrecision; nothing without a precision
 };

@@ -1,4 +1,4 @@
-// The parts of a video: which of them would do for a reconstruction of their own, and what the
+// The parts of a video: which of them would suffice for a reconstruction of their own, and what the
 // others lack.
 
 #pragma once

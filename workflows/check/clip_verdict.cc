@@ -90,7 +90,7 @@ class Judge {
     }
   }
 
-  // Where the camera has seen the markers on both sides, filming longer does not help.
+  // If the camera has seen the markers on both sides, filming longer does not help.
   void JudgeUnseen() {
     const std::vector<int>& between = facts_.ids_unseen_between_seen;
     std::vector<int> others;

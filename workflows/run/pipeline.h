@@ -42,7 +42,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options);
 void CheckLayoutOfDatabase(const ColmapDatabase& database, const std::string& database_path,
                            const Layout& layout);
 
-// Registers the images of a database and makes the seed model; logs the decisions. Where the
+// Registers the images of a database and makes the seed model; logs the decisions. If the
 // database was made without a calibration, its cameras are found first
 // (reconstruct/camera_search.h) with the options `adjustment`.
 SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
