@@ -24,23 +24,15 @@ cv::Point PatchFromBox(const PatternProblem& problem) {
 VELAMAP_CLONE_FOR_AVX2 cv::Mat Differences(const FittedSample& sample) {
   const PatternProblem& problem = sample.problem;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
-  const cv::Point patch_from_box = PatchFromBox(problem);
-  const Eigen::Vector2d box_from_center =
-      Eigen::Vector2d(problem.box.x, problem.box.y) - problem.model.center_px;
   cv::Mat difference = cv::Mat::zeros(problem.box.size(), CV_32F);
   PatternPixels modelled;
   for (std::size_t begin = 0; begin < sample.places.size(); begin += kLanes) {
-    const std::size_t end = std::min(begin + kLanes, sample.places.size());
-    Floats x{}, y{};
-    for (std::size_t i = begin; i < end; ++i) {
-      x[i - begin] = static_cast<float>(sample.places[i].in_box.x + box_from_center.x());
-      y[i - begin] = static_cast<float>(sample.places[i].in_box.y + box_from_center.y());
-    }
-    picture.At(x, y, &modelled);
-    for (std::size_t i = begin; i < end; ++i) {
-      difference.at<float>(sample.places[i].in_box) =
-          modelled.gray[i - begin] -
-          problem.patch.values.at<float>(sample.places[i].in_box + patch_from_box);
+    const PlaceGroup group = PlaceGroupAt(sample, begin);
+    picture.At(group.from_center_x_px, group.from_center_y_px, &modelled);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const SamplePlace& place = sample.places[i];
+      difference.at<float>(place.in_box) =
+          modelled.gray[i - group.begin] - RecordedGray(sample, place);
     }
   }
   return difference;
@@ -79,6 +71,25 @@ bool HasRunAway(const FittedSample& sample) {
 
 }  // namespace
 
+PlaceGroup PlaceGroupAt(const FittedSample& sample, std::size_t begin) {
+  const PatternProblem& problem = sample.problem;
+  const Eigen::Vector2d box_from_center =
+      Eigen::Vector2d(problem.box.x, problem.box.y) - problem.model.center_px;
+  PlaceGroup group;
+  group.begin = begin;
+  group.end = std::min(begin + kLanes, sample.places.size());
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const cv::Point& in_box = sample.places[i].in_box;
+    group.from_center_x_px[i - begin] = static_cast<float>(in_box.x + box_from_center.x());
+    group.from_center_y_px[i - begin] = static_cast<float>(in_box.y + box_from_center.y());
+  }
+  return group;
+}
+
+float RecordedGray(const FittedSample& sample, const SamplePlace& place) {
+  return sample.problem.patch.values.at<float>(place.in_box + PatchFromBox(sample.problem));
+}
+
 bool IsClipped(const FittedSample& sample, const SamplePlace& place) {
   const cv::Mat& is_left_out = sample.problem.patch.is_left_out;
   return !is_left_out.empty() &&
@@ -92,6 +103,7 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
   FittedSample fitted;
   fitted.gray = sample.gray;
   fitted.may_bend = sample.may_bend;
+  fitted.lens_bend = sample.marker.lens_bend;
   auto problem =
       MakePatternProblem(sample.gray, sample.corners_px, sample.marker, formation, &fitted.minimum);
   if (!problem || !FitPatternInPasses(&*problem, &fitted.minimum)) return std::nullopt;

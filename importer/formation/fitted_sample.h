@@ -2,12 +2,14 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/lanes/float_lanes.h"
 #include "importer/pattern/image_formation.h"
 #include "importer/pattern/known_marker.h"
 #include "importer/pattern/pattern_problem.h"
@@ -30,11 +32,22 @@ struct SamplePlace {
 struct FittedSample {
   cv::Mat gray;
   bool may_bend = false;
+  PatternBend lens_bend;  // of the known marker; sample_bend.h adds that of the surface
   PatternProblem problem;
   PatternMinimum minimum;
   std::vector<SamplePlace> places;  // of the pixels near edges
   std::vector<float> residuals;     // at these places; empty: the fit failed
 };
+
+// Up to kLanes neighbours in `places`, as the model takes them.
+struct PlaceGroup {
+  std::size_t begin = 0, end = 0;                 // in sample.places
+  Floats from_center_x_px{}, from_center_y_px{};  // from the center of the problem's model
+};
+PlaceGroup PlaceGroupAt(const FittedSample& sample, std::size_t begin);
+
+// Grey value of the picture there, from which the sharpening has been removed.
+float RecordedGray(const FittedSample& sample, const SamplePlace& place);
 
 // Whether the pixel gives only a limit of the value there, with which the fit agrees; the residual
 // is zero.

@@ -52,31 +52,22 @@ VELAMAP_CLONE_FOR_AVX2 StepEquations EquationsOf(const FittedSample& sample, int
   const PatternProblem& problem = sample.problem;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
   const UnitSquareMap map(CornersOf(sample.minimum.parameters));
-  const cv::Point patch_from_box = problem.box.tl() - problem.patch.origin_px;
   const Eigen::Vector2d box_px(problem.box.x, problem.box.y);
   StepEquations equations;
   PatternPixels modelled;
   const std::size_t num_groups = (sample.places.size() + kLanes - 1) / kLanes;
   const std::size_t stride = std::max<std::size_t>(1, num_groups * kLanes / max_pixels);
-  for (std::size_t group = 0; group < num_groups; group += stride) {
-    const std::size_t begin = group * kLanes;
-    const std::size_t end = std::min(begin + kLanes, sample.places.size());
-    Floats x{}, y{};
-    for (std::size_t i = begin; i < end; ++i) {
-      const cv::Point& in_box = sample.places[i].in_box;
-      x[i - begin] = static_cast<float>(in_box.x + box_px.x() - problem.model.center_px.x());
-      y[i - begin] = static_cast<float>(in_box.y + box_px.y() - problem.model.center_px.y());
-    }
-    picture.At(x, y, &modelled);
-    for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t g = 0; g < num_groups; g += stride) {
+    const PlaceGroup group = PlaceGroupAt(sample, g * kLanes);
+    picture.At(group.from_center_x_px, group.from_center_y_px, &modelled);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
       const SamplePlace& place = sample.places[i];
       if (IsClipped(sample, place)) continue;
       const Eigen::Vector2d x_px = box_px + Eigen::Vector2d(place.in_box.x, place.in_box.y);
-      const auto lane = static_cast<int>(i - begin);
+      const auto lane = static_cast<int>(i - group.begin);
       const StepVector row = RowOf(modelled, lane, map.ToSquare(x_px));
       const double weight = place.is_at_outline_corner ? problem.model.outline_corner_weight : 1.0;
-      const double residual =
-          modelled.gray[lane] - problem.patch.values.at<float>(place.in_box + patch_from_box);
+      const double residual = modelled.gray[lane] - RecordedGray(sample, place);
       equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
       equations.gradient += weight * residual * row;
     }
@@ -100,7 +91,8 @@ bool StepTowardsBend(int max_pixels, FittedSample* sample) {
   departure.head<kFirstCubic>() << from_mean.segment<kNumCornerCoordinates>(P::kCorners),
       from_mean.segment<kNumPlainBends>(P::kBendU);
   for (std::size_t i = 0; i < kCubicTerms.size(); ++i) {
-    departure.segment<2>(kFirstCubic + 2 * static_cast<int>(i)) = bend_px.col(kCubicTerms[i]);
+    departure.segment<2>(kFirstCubic + 2 * static_cast<int>(i)) =
+        bend_px.col(kCubicTerms[i]) - sample->lens_bend.coefficients_px.col(kCubicTerms[i]);
   }
   equations.hessian.diagonal() += weight;
   equations.gradient += weight.cwiseProduct(departure);
