@@ -270,7 +270,9 @@ void CheckImagePath(const std::string& path) {
   if (FileSize(path) == 0)
     throw InputError(path + ": the file is empty; copy it from the camera again");
   if (HasImageExtension(path)) {
-    throw InputError(path + ": a single image; give the folder that holds the images");
+    throw InputError(path +
+                     ": a single image, by its name; give the folder that holds the images "
+                     "(a video needs the extension of its format, such as .mp4)");
   }
 }
 
