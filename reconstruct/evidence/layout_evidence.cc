@@ -104,18 +104,42 @@ struct Judgement {
   std::string reason;  // from the first line that contradicts it
 };
 
-// Holds the markers on lines with at least kMinPointsOnLine markers, by id.
+// Judges the markers that are alone on a line with one other marker, if another line confirms that
+// one. Adds to `judgements`, which hold what the longer lines say.
+void JudgePairs(const std::vector<JudgedLine>& lines, double step_m,
+                std::map<int, Judgement>* judgements) {
+  const std::map<int, Judgement> by_longer_lines = *judgements;
+  const auto is_confirmed = [&](const PlacedMarker* marker) {
+    const auto found = by_longer_lines.find(marker->marker_id);
+    return found != by_longer_lines.end() && found->second.num_against < found->second.num_lines;
+  };
+  for (const JudgedLine& line : lines) {
+    if (line.points.size() != 2) continue;
+    const bool is_first_confirmed = is_confirmed(line.markers[0]);
+    if (is_first_confirmed == is_confirmed(line.markers[1])) continue;
+    const std::size_t doubted = is_first_confirmed ? 1 : 0;
+    Judgement& judgement = (*judgements)[line.markers[doubted]->marker_id];
+    ++judgement.num_lines;
+    if (IsStrayFrom(line.points[1 - doubted], line.points[doubted], step_m) &&
+        judgement.num_against++ == 0) {
+      judgement.reason = WhyStray(line, {doubted}, doubted, step_m);
+    }
+  }
+}
+
+// Holds the markers on lines with at least kMinPointsOnLine markers, and those of JudgePairs(), by
+// id.
 std::map<int, Judgement> JudgeByLines(const LayoutPart& part, const MarkersById& markers) {
   std::vector<JudgedLine> lines = LinesOf(part, markers);
   std::map<int, Judgement> judgements;
   const std::optional<double> step_of_part_m = StepOfPart(lines);
   for (JudgedLine& line : lines) {
-    if (line.points.size() < kMinPointsOnLine) continue;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
-      const PlacedMarker& marker = *line.markers[i];
-      line.points[i].trust = TrustOf(marker, NeighborsSeen(lines, markers, marker.marker_id));
-      ++judgements[marker.marker_id].num_lines;
+      line.points[i].trust =
+          TrustOf(*line.markers[i], NeighborsSeen(lines, markers, line.markers[i]->marker_id));
     }
+    if (line.points.size() < kMinPointsOnLine) continue;
+    for (const PlacedMarker* marker : line.markers) ++judgements[marker->marker_id].num_lines;
     const double step_m = StepOfLine(line, step_of_part_m);
     const std::vector<std::size_t> stray_idxs = FindStrayPoints(line.points, step_m);
     for (const std::size_t idx : stray_idxs) {
@@ -125,6 +149,7 @@ std::map<int, Judgement> JudgeByLines(const LayoutPart& part, const MarkersById&
       }
     }
   }
+  if (step_of_part_m) JudgePairs(lines, *step_of_part_m, &judgements);
   return judgements;
 }
 

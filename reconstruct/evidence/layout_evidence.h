@@ -45,7 +45,8 @@ struct Contradiction {
 //   or else the one that more than twice as many images show. If neither test decides, both are
 //   contradicted.
 // - On every line, line_evidence.h finds the markers that cannot be on it. A marker on several
-//   lines is contradicted only if it cannot be on any of them.
+//   lines is contradicted only if it cannot be on any of them. On a line of two, a marker that
+//   another line confirms judges the other one.
 // - A marker that no line can judge is contradicted if it is seen much less often than the others
 //   and its distance from them exceeds twice their extent.
 std::vector<Contradiction> FindContradictions(const Layout& layout,

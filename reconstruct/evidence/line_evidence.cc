@@ -57,12 +57,10 @@ double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::siz
          2 * kNumSigmas * point.sigma_m;
 }
 
-// The price of leaving out points[idx] at an end of the line, m. `inner_idx` is its neighbour. Each
-// missing place between the two adds one step, so that only one of the steps may be unusually long.
-double CostAtEnd(const std::vector<LinePoint>& points, std::size_t idx, std::size_t inner_idx,
-                 double step_m) {
-  const LinePoint& point = points[idx];
-  const int num_usual_steps = std::abs(Gap(point, points[inner_idx])) - 1;
+// The price of leaving out a point at an end of the line, m. `inner` is its neighbour. Each missing
+// place between the two adds one step, so that only one of the steps may be unusually long.
+double CostAtEnd(const LinePoint& point, const LinePoint& inner, double step_m) {
+  const int num_usual_steps = std::abs(Gap(point, inner)) - 1;
   return (PriceOf(point.trust).at_end + num_usual_steps) * step_m + kNumSigmas * point.sigma_m;
 }
 
@@ -72,7 +70,7 @@ std::vector<std::size_t> CheapestPath(const std::vector<LinePoint>& points, doub
   std::vector<double> cost(num, 0.0);  // of the cheapest path that ends at each point
   std::vector<std::size_t> previous(num, num);
   for (std::size_t j = 0; j < num; ++j) {
-    for (std::size_t d = 0; d < j; ++d) cost[j] += CostAtEnd(points, d, d + 1, step_m);
+    for (std::size_t d = 0; d < j; ++d) cost[j] += CostAtEnd(points[d], points[d + 1], step_m);
     for (std::size_t i = j; i-- > 0;) {
       double by_path = cost[i] + LinkCost(points[i], points[j], step_m);
       for (std::size_t d = i + 1; d < j; ++d) by_path += CostBetween(points, i, j, d, step_m);
@@ -88,7 +86,7 @@ std::vector<std::size_t> CheapestPath(const std::vector<LinePoint>& points, doub
       least = cost[j] + beyond;
       last = j;
     }
-    if (j > 0) beyond += CostAtEnd(points, j, j - 1, step_m);
+    if (j > 0) beyond += CostAtEnd(points[j], points[j - 1], step_m);
   }
   std::vector<std::size_t> path;
   for (std::size_t j = last; j < num; j = previous[j]) path.push_back(j);
@@ -141,6 +139,11 @@ double SmallestStep(const std::vector<LinePoint>& points) { return NearSteps(poi
 bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
                     double num_uneven_steps) {
   return Distance(a, b) <= (Gap(a, b) + num_uneven_steps) * step_m;
+}
+
+bool IsStrayFrom(const LinePoint& confirmed, const LinePoint& doubted, double step_m) {
+  return Distance(confirmed, doubted) >
+         CostAtEnd(doubted, confirmed, step_m) + kNumSigmas * confirmed.sigma_m;
 }
 
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m) {

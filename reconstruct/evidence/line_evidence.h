@@ -48,6 +48,10 @@ double SmallestStep(const std::vector<LinePoint>& points);
 bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
                     double num_uneven_steps = 0.5);
 
+// Whether `doubted` is too far from `confirmed` to be on a line with it. For lines on which only
+// these two are left.
+bool IsStrayFrom(const LinePoint& confirmed, const LinePoint& doubted, double step_m);
+
 // Ascending indices of the points that are not on the line. Empty if these would be half of the
 // points or more, because the line in the layout is then probably wrong. Points that their
 // neighbours confirm are not stray, so both pieces of torn cloth are kept.

@@ -139,6 +139,22 @@ TEST(LayoutEvidence, OneLineAcquitsWhatAnotherContradicts) {
   EXPECT_THAT(FalseIds(sail), ElementsAre(12, 22, 32));
 }
 
+// Of line h2, only 22, which the vertical line confirms, and 25 are found.
+TEST(LayoutEvidence, OfTwoOnALineTheOneThatAnotherLineConfirmsJudges) {
+  RandomSail sail = EvenSail();
+  const std::set<int> unseen = {20, 21, 23, 24, 26, 27};
+  sail.markers.erase(
+      std::remove_if(sail.markers.begin(), sail.markers.end(),
+                     [&](const PlacedMarker& m) { return unseen.count(m.marker_id) > 0; }),
+      sail.markers.end());
+  EXPECT_THAT(FalseIds(sail), IsEmpty());
+  sail.Find(25)->center_in_shape_m.y() += 3.5;
+  EXPECT_THAT(FalseIds(sail), ElementsAre(25));
+  // Without the vertical line, nothing says which of the two is wrong.
+  sail.layout.parts[0].vertical.clear();
+  EXPECT_THAT(FalseIds(sail), IsEmpty());
+}
+
 TEST(LayoutEvidence, LineListedInAnotherOrderIsNotBelieved) {
   RandomSail sail = EvenSail();
   auto& ids = sail.layout.parts[0].horizontal[1].marker_ids;
