@@ -11,6 +11,7 @@
 #include "importer/base/files.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/text/json_text.h"
 #include "importer/text/output_date.h"
 
 namespace velamap {
@@ -125,8 +126,7 @@ void WriteShapeJson(const ShapeFrame& frame, const Model& model, int num_markers
   root["cameras"] = CamerasOf(model, origin.is_camera_found);
   root["files"] = Json::object();
   for (const auto& [name, content] : files) root["files"][name] = content;
-  // Names need not be UTF-8; invalid bytes are replaced.
-  out << root.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << JsonText(root, 1) << '\n';
 }
 
 }  // namespace velamap

@@ -63,7 +63,7 @@ void CheckMovement(const std::vector<DatabaseImage>& images, const Camera& guess
   for (const auto& [corner_id, box] : places_px) {
     largest_px = std::max(largest_px, box.diagonal().norm());
   }
-  if (largest_px >= kLeastMovement * std::max(guess.width_px, guess.height_px)) return;
+  if (largest_px >= kLeastMovement * LargerSide(guess)) return;
   throw DataError(fmt::format("all {} pictures are alike: nothing moves by more than {:.0f} px; {}",
                               images.size(), largest_px, kRemedy));
 }
@@ -203,7 +203,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   constexpr double kRepeated = 5e-4;  // of the larger side
   const std::vector<BoardView> views =
       WithoutRepeatedViews(DescribeBoardViews(Upright(images, guesses), adjustment.corner_sigma_px),
-                           kRepeated * std::max(guess.width_px, guess.height_px));
+                           kRepeated * LargerSide(guess));
   const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
   CameraCalibration calibration;
   calibration.num_images = static_cast<int>(views.size());

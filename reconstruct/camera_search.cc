@@ -25,8 +25,6 @@ constexpr double kMinFocal = 0.25, kMaxFocal = 8.0;  // times the larger side
 // The markers hardly constrain the focal length if its logarithm has a sigma above this.
 constexpr double kVagueLogSigma = 0.1;
 
-int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }
-
 // An initial guess of all cameras.
 struct Start {
   std::string name;

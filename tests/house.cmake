@@ -8,7 +8,7 @@ house_folder(importer/base PUBLIC
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  csv id_ranges markup nearest_name number_text output_date shown_text text_file)
+  csv id_ranges json_text markup nearest_name number_text output_date shown_text text_file)
 house_folder(importer/lanes PUBLIC
   blurred_cells float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC

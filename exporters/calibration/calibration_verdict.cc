@@ -151,7 +151,7 @@ class Judge {
     }
     const std::size_t center = NumFocalLengths(found.camera.model);
     const double center_px = std::max(found.sigmas[center], found.sigmas[center + 1]);
-    const double side_px = std::max(found.camera.width_px, found.camera.height_px);
+    const double side_px = LargerSide(found.camera);
     if (center_px > kGoodCenterSigma * side_px) {
       reasons_.Check(
           fmt::format("the principal point is known to {:.1f} px: turn the board by quarters of "

@@ -45,6 +45,15 @@ MarkerShape OnPart(const MarkerShape& shape, const Layout& layout, const std::st
   return part.empty() ? shape : MarkersOnPart(shape, layout, part);
 }
 
+// The deviation of a marker that has not been compared yet.
+MarkerDeviation DeviationOf(const ShapeMarker& marker, const Layout& layout) {
+  MarkerDeviation deviation;
+  deviation.marker_id = marker.marker_id;
+  deviation.part = PartOf(marker, layout);
+  deviation.x_in_reference_m = *marker.x_in_shape_m[0];
+  return deviation;
+}
+
 // `surface_sigma_m` is 0 for a shape as the reference, whose noise is in the covariance.
 void SetSigma(const std::optional<Eigen::Matrix3d>& covariance_m2, double surface_sigma_m,
               MarkerDeviation* marker) {
@@ -194,10 +203,7 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
       deviation.only_in_shape.push_back(marker.marker_id);
       continue;
     }
-    MarkerDeviation result;
-    result.marker_id = marker.marker_id;
-    result.part = PartOf(marker, layout);
-    result.x_in_reference_m = *marker.x_in_shape_m[0];
+    MarkerDeviation result = DeviationOf(marker, layout);
     result.normal = MarkerNormal(*other);
     result.difference_m = *marker.x_in_shape_m[0] - *other->x_in_shape_m[0];
     result.distance_m = result.normal.dot(*result.difference_m);
@@ -241,10 +247,7 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
   for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
     if (!marker.IsWhole()) continue;
     const MeshFoot foot = ProjectMarker(mesh, marker);
-    MarkerDeviation result;
-    result.marker_id = marker.marker_id;
-    result.part = PartOf(marker, layout);
-    result.x_in_reference_m = *marker.x_in_shape_m[0];
+    MarkerDeviation result = DeviationOf(marker, layout);
     result.normal = foot.normal;
     result.distance_m = foot.distance_m;
     result.beside_m = foot.beside_m;

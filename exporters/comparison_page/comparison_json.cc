@@ -9,6 +9,7 @@
 #include "exporters/comparison_page/comparison_words.h"
 #include "exporters/report/html_page.h"
 #include "importer/geometry/units.h"
+#include "importer/text/json_text.h"
 
 namespace velamap {
 namespace {
@@ -194,8 +195,7 @@ std::string ComparisonJson(const ComparisonPageInput& input) {
   json["numbers"] = NumbersJson(input.series);
   json["profiles"] = ProfilesJson(input);
   json["markers"] = MarkersJson(input);
-  // Names need not be UTF-8; invalid bytes are replaced.
-  return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return EscapeForScript(JsonText(json));
 }
 
 }  // namespace velamap

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_ply.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 
@@ -97,9 +98,7 @@ void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> c
     vertex.distance_m = compared.is_over_surface ? compared.distance_m : kUnknown;
     vertex.sigma_m = compared.is_over_surface ? compared.sigma_m.value_or(0.0) : kUnknown;
     vertex.marker_id = compared.marker_id;
-    // Corners 1..4 run clockwise seen from the front; a face runs the other way.
-    const int first = static_cast<int>(vertices.rows.size());
-    faces.rows.push_back({{first, first + 3, first + 2, first + 1}, compared.marker_id});
+    faces.rows.push_back({MarkerFace(static_cast<int>(vertices.rows.size())), compared.marker_id});
     for (vertex.corner = 1; vertex.corner <= kNumCorners; ++vertex.corner) {
       vertex.x_in_reference_m = *marker->x_in_shape_m[static_cast<std::size_t>(vertex.corner)];
       vertices.rows.push_back(vertex);

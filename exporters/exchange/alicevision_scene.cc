@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/text/json_text.h"
 
 namespace velamap {
 namespace {
@@ -161,8 +162,7 @@ void WriteAliceVisionScene(const Model& model, std::ostream& out) {
     if (!IsCornerPoint3DId(point3D_id)) continue;
     scene["structure"].push_back(LandmarkJson(point3D_id, point, model));
   }
-  // Names need not be UTF-8; invalid bytes are replaced.
-  out << scene.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << JsonText(scene, 1) << '\n';
 }
 
 }  // namespace velamap

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "importer/text/csv.h"
+#include "importer/text/json_text.h"
 
 namespace velamap {
 namespace {
@@ -140,9 +141,7 @@ void WriteMetricsJson(const MetricsReport& report, std::ostream& out) {
     nlohmann::ordered_json& rows = json[table.name] = nlohmann::ordered_json::array();
     for (const Metrics& row : table.rows) rows.push_back(JsonObject(row));
   }
-  // File names need not be UTF-8; invalid bytes are replaced.
-  constexpr int kIndent = 1;
-  out << json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  out << JsonText(json, 1) << '\n';
 }
 
 }  // namespace velamap

@@ -133,8 +133,7 @@ void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& o
       vertices.rows.push_back(MakeVertex(marker, corner));
       vertices.rows.back().color = part_colors.at(marker.part);
     }
-    // Corners 1..4 run clockwise seen from the front; a face runs the other way.
-    faces.rows.push_back({{first, first + 3, first + 2, first + 1}, marker.marker_id});
+    faces.rows.push_back({MarkerFace(first), marker.marker_id});
   }
   AddSigma(&vertices);
   WritePly(format, Comments("velamap markers, metres", frame), out, vertices, faces);

@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <array>
 #include <iosfwd>
 #include <string>
 
@@ -15,16 +16,22 @@
 
 namespace velamap {
 
+// The vertices of the face of a whole marker whose corners 1..4 are the vertices from `first` on.
+// Corners run clockwise seen from the front; a face runs the other way, so that its normal is the
+// outward one.
+constexpr std::array<int, 4> MarkerFace(int first) {
+  return {first, first + 3, first + 2, first + 1};
+}
+
 // Writes every corner and centre as a vertex: double x y z, float nx ny nz (the normal of the
 // marker, zero if it is not whole), uchar red green blue (of the model's points; a centre gets the
 // mean of its corners), int marker_id, int corner.
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
                     std::ostream& out, const std::string& frame = "");
 
-// Writes every whole marker as a quadrilateral that is counter-clockwise seen from the front, so
-// that its normal is the outward one: four vertices with double x y z, float nx ny nz, uchar red
-// green blue (one colour per part), int marker_id, int corner, and faces with vertex_indices and
-// int marker_id.
+// Writes every whole marker as a quadrilateral (MarkerFace()): four vertices with double x y z,
+// float nx ny nz, uchar red green blue (one colour per part), int marker_id, int corner, and faces
+// with vertex_indices and int marker_id.
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out,
                      const std::string& frame = "");
 

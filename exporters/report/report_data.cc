@@ -18,6 +18,7 @@
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
+#include "importer/text/json_text.h"
 
 namespace velamap {
 namespace {
@@ -199,8 +200,7 @@ std::string ReportJson(const ReportInput& input) {
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
   AddSail(input, &json);
-  // File names need not be UTF-8; invalid bytes are replaced.
-  return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return EscapeForScript(JsonText(json));
 }
 
 }  // namespace velamap

@@ -12,6 +12,7 @@
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
 #include "importer/text/csv.h"
+#include "importer/text/json_text.h"
 
 namespace velamap {
 namespace {
@@ -120,7 +121,7 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     root["missing"].push_back(
         {{"part", missing.part}, {"section", missing.name}, {"reason", missing.reason}});
   }
-  out << root.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << JsonText(root, 2) << '\n';
 }
 
 void WriteSectionProfilesCsv(const SectionReport& report, std::ostream& out) {

@@ -219,7 +219,7 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
 // image circle of a fisheye camera of 220 degrees has 0.26 of its diameter as the focal length.
 void CheckRangeOfParams(const Camera& camera, const std::string& path) {
   constexpr double kMaxSides = 1e4, kMinFocalSides = 0.1, kMaxFocalSides = 50;
-  const double side_px = std::max(camera.width_px, camera.height_px);
+  const double side_px = LargerSide(camera);
   const std::size_t num_focal = NumFocalLengths(camera.model);
   for (std::size_t i = 0; i < num_focal + 2; ++i) {
     const double value_px = camera.params[i];

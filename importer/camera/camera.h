@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,9 @@ struct Camera {
            a.params == b.params;
   }
 };
+
+// The larger side of the image, px.
+inline int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }
 
 // COLMAP's names are upper case. An unknown name or id yields nothing.
 std::string CameraModelName(CameraModel model);

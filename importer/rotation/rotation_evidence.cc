@@ -30,7 +30,7 @@ struct Relation {
 };
 
 // The mean of the top and the bottom side.
-Eigen::Vector2d TopSide(const MarkerDetection& marker) {
+Eigen::Vector2d MeanTopSide(const MarkerDetection& marker) {
   const auto& x = marker.corners_in_image_px;
   return 0.5 * (x[1] - x[0] + x[2] - x[3]);
 }
@@ -38,9 +38,9 @@ Eigen::Vector2d TopSide(const MarkerDetection& marker) {
 Relation RelationTo(const MarkerDetection& other, const MarkerDetection& marker) {
   const auto& x = other.corners_in_image_px;
   Eigen::Matrix2d sides;
-  sides << TopSide(other), 0.5 * (x[3] - x[0] + x[2] - x[1]);
+  sides << MeanTopSide(other), 0.5 * (x[3] - x[0] + x[2] - x[1]);
   const Eigen::Matrix2d other_from_image = sides.inverse();
-  return {(other_from_image * TopSide(marker)).normalized(),
+  return {(other_from_image * MeanTopSide(marker)).normalized(),
           other_from_image * (CornerMean(marker) - CornerMean(other))};
 }
 
@@ -113,8 +113,8 @@ KnownRelations LearnRelations(const CodeSymmetries& symmetries,
 
 // The turn on which all known relations with the markers of the frame agree; -1 if there are none
 // or they disagree. A marker that is not where it should be, such as a false id, is ignored.
-int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_turns,
-               const KnownRelations& known, const std::vector<MarkerDetection>& others) {
+int ChooseTurnByRelations(const MarkerDetection& marker, const std::vector<int>& possible_turns,
+                          const KnownRelations& known, const std::vector<MarkerDetection>& others) {
   std::vector<int> turns = {0};
   turns.insert(turns.end(), possible_turns.begin(), possible_turns.end());
   int chosen = -1;
@@ -161,9 +161,10 @@ bool ResolveByOthers(const CodeSymmetries& symmetries, const KnownRelations& kno
   std::vector<RejectedDetection> rest;
   for (const RejectedDetection& rejected : frame->rejected) {
     const MarkerDetection& marker = rejected.detection;
-    const int turn = IsDoubtful(rejected) ? ChooseTurn(marker, symmetries.at(marker.marker_id),
-                                                       known, frame->markers)
-                                          : -1;
+    const int turn =
+        IsDoubtful(rejected)
+            ? ChooseTurnByRelations(marker, symmetries.at(marker.marker_id), known, frame->markers)
+            : -1;
     if (turn >= 0) {
       resolved.push_back(Turned(marker, turn));
     } else {

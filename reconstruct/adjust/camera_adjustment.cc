@@ -22,7 +22,7 @@ double Explained(const Model& model) {
   double explained = 0.0;
   for (const ModelImage& image : model.images) {
     const Camera& camera = model.cameras.at(image.camera_id);
-    const double tolerance_px = kTolerance * std::max(camera.width_px, camera.height_px);
+    const double tolerance_px = kTolerance * LargerSide(camera);
     for (const SeenPoint& point : SeenPointsOf(model, image)) {
       const auto x_px = ImageFromCam(camera, image.cam_from_world * point.x_in_world);
       if (!x_px) continue;

@@ -210,7 +210,7 @@ std::optional<PrincipalPointWander> FindWander(const Model& model,
   constexpr std::size_t kMinImages = 8;
   if (values.size() < kMinImages) return std::nullopt;
   const Camera& camera = model.cameras.at(model.FindImage(values.front().image_id)->camera_id);
-  const double least_px = kMinSpread * std::max(camera.width_px, camera.height_px);
+  const double least_px = kMinSpread * LargerSide(camera);
   std::optional<PrincipalPointWander> wander;
   for (const int axis : {0, 1}) {
     std::vector<double> offsets, sigmas;

@@ -131,7 +131,7 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
     if (i < num_focal) {
       sigma = kFocalSigma * focal_px;
     } else if (distortion < 0) {
-      sigma = kCenterSigma * std::max(camera.width_px, camera.height_px);
+      sigma = kCenterSigma * LargerSide(camera);
     } else if (PowerOfRay(camera.model, distortion) == 0) {
       sigma *= kTangentialSigma / kRadialSigma;
     }

@@ -16,7 +16,8 @@ struct FrameStep {
   double distance_px = 0.0, sigma_px = 0.0;
 };
 
-std::optional<FrameStep> StepBetween(const FrameDetections& before, const FrameDetections& after) {
+std::optional<FrameStep> FrameStepBetween(const FrameDetections& before,
+                                          const FrameDetections& after) {
   std::vector<double> distances_px;
   double sum_px = 0.0;
   auto old = before.markers.begin();
@@ -33,8 +34,8 @@ std::optional<FrameStep> StepBetween(const FrameDetections& before, const FrameD
 
 // The upper quartile of the six steps before and the six after: a cut does not count, and a video
 // of which two frames in three are repeated still shows its motion.
-std::optional<double> UsualStep(const std::vector<std::optional<FrameStep>>& steps,
-                                std::size_t idx) {
+std::optional<double> UsualFrameStep(const std::vector<std::optional<FrameStep>>& steps,
+                                     std::size_t idx) {
   constexpr std::size_t kReach = 6;
   std::vector<double> around;
   const std::size_t end = std::min(idx + kReach + 1, steps.size());
@@ -57,13 +58,13 @@ std::vector<bool> FindRepeatedFrames(const std::vector<const DatabaseImage*>& fr
   constexpr double kMaxSigmas = 0.2;
   std::vector<std::optional<FrameStep>> steps(frames.size());
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    steps[i] = StepBetween(frames[i - 1]->detections, frames[i]->detections);
+    steps[i] = FrameStepBetween(frames[i - 1]->detections, frames[i]->detections);
   }
   std::vector<bool> is_repeated(frames.size(), false);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (!steps[i]) continue;
     const double distance_px = steps[i]->distance_px;
-    const std::optional<double> usual_px = UsualStep(steps, i);
+    const std::optional<double> usual_px = UsualFrameStep(steps, i);
     is_repeated[i] = distance_px <= kMaxSigmas * steps[i]->sigma_px ||
                      (usual_px && distance_px < kMaxShare * *usual_px);
   }

@@ -29,7 +29,8 @@ Layout LayoutOfChessboard(const BoardCalibrationOptions& options) {
 }
 
 // The layout of the best dictionary; the camera does not depend on the size of the board.
-Layout FindLayout(const BoardCalibrationOptions& options, ArucoDetectionOptions* detection) {
+Layout LayoutOfBestDictionary(const BoardCalibrationOptions& options,
+                              ArucoDetectionOptions* detection) {
   constexpr int kNumFrames = 10;
   const int num_frames = OpenFrameSource(options.image_path, options.video)->NumFrames();
   const ClipFrames clip =
@@ -60,7 +61,7 @@ BoardCalibration CalibrateWithBoard(const BoardCalibrationOptions& options) {
   importer.chessboard = options.chessboard;
   importer.layout = options.chessboard ? LayoutOfChessboard(options)
                     : options.layout   ? *options.layout
-                                       : FindLayout(options, &importer.detection);
+                                       : LayoutOfBestDictionary(options, &importer.detection);
   ImportImages(importer);
   const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
   return {options.chessboard ? ChessboardName(*options.chessboard)

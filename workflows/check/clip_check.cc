@@ -30,7 +30,8 @@ constexpr std::size_t kFewMarkers = 4;
 
 // The layout of the best dictionary; an empty one if none finds markers. The pictures that were
 // tried may lack an id, so all ids of the family are searched for.
-Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
+Layout LayoutOfBestDictionary(const ClipFrames& clip, ArucoDetectionOptions* detection,
+                              ClipFacts* facts) {
   const std::vector<DictionaryHint> hints = FindDictionaries(clip, *detection);
   if (hints.empty()) return {};
   facts->num_markers_found = hints[0].num_markers;
@@ -83,7 +84,8 @@ class Checker {
     facts.has_layout = options_.layout && options_.layout->HasMarkers();
     facts.has_camera = options_.camera.has_value();
     ArucoDetectionOptions detection = options_.detection;
-    const Layout layout = options_.layout ? *options_.layout : FindLayout(clip, &detection, &facts);
+    const Layout layout =
+        options_.layout ? *options_.layout : LayoutOfBestDictionary(clip, &detection, &facts);
     if (options_.layout) facts.dictionary = layout.dictionary;
     facts.is_inverted = detection.inverted;
     MarkFrame(clip.frames[0], {});

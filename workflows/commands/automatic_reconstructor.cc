@@ -165,8 +165,7 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
   }
-  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
-  LogContradictions(shape);
+  input.warnings = WarningsBeforeContradictions(shape);
   if (design != nullptr) {  // after the warnings: the verdict is on the shape alone
     AddDesign(options.design, *design, shape, options.importer.layout,
               options.exporter.sail.sections, &input);

@@ -76,8 +76,7 @@ Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
   WarnOfMissingSections(report.sail.sections);
   ReportInput input =
       MakeReportInput(report, layout, WithoutDoubtfulStep(JudgeSteadiness(report.metric_model)));
-  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
-  LogContradictions(report);
+  input.warnings = WarningsBeforeContradictions(report);
   return MakeVerdict(input);
 }
 

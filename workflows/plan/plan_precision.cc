@@ -42,7 +42,7 @@ class Clip {
 
  private:
   void Observe(const MarkerView& view, ModelImage* image) {
-    const double sigma_px = CornerSigma(options_.corner_sigma_px, view.side_px);
+    const double sigma_px = ExpectedCornerSigma(options_.corner_sigma_px, view.side_px);
     const ShapeMarker& marker = *FindMarker(surface_.shape, view.marker_id);
     for (int corner = 1; corner <= kNumCorners; ++corner) {
       const Point3DId id = Point3DIdFromCorner({view.marker_id, corner});

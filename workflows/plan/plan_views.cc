@@ -130,7 +130,7 @@ ViewSummary Summarize(const PlannedSurface& surface,
 
 double NarrowPxForHalf(int num_cells) { return kPxPerCellForHalf * num_cells; }
 
-double CornerSigma(double corner_sigma_px, double side_px) {
+double ExpectedCornerSigma(double corner_sigma_px, double side_px) {
   // Noise that averages out along an edge, and the error of the encoder, which does not depend on
   // the size.
   const auto relative = [](double side) { return std::hypot(0.05, 0.6 / side); };

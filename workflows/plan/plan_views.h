@@ -60,7 +60,7 @@ ViewSummary Summarize(const PlannedSurface& surface,
 double NarrowPxForHalf(int num_cells);
 
 // 1 sigma of a corner's coordinate, px; `corner_sigma_px` is the sigma on a marker of 20 px.
-double CornerSigma(double corner_sigma_px, double side_px);
+double ExpectedCornerSigma(double corner_sigma_px, double side_px);
 
 // The longest motion of a marker in the picture that is tolerable while the shutter is open: half a
 // cell along its narrow side. It loses hardly any markers and a quarter of the corners' precision;

@@ -15,6 +15,7 @@
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
 #include "importer/text/number_text.h"
+#include "workflows/run/logging.h"
 
 namespace velamap {
 namespace {
@@ -173,9 +174,11 @@ std::string ShellQuote(const std::string& text) {
   return quoted + "'";
 }
 
-void LogContradictions(const ShapeExportReport& report) {
+std::vector<std::string> WarningsBeforeContradictions(const ShapeExportReport& report) {
+  std::vector<std::string> warnings = LoggedWarnings();
   for (const std::string& warning : ScaleWarnings(report.audit)) LogWarning(warning);
   for (const std::string& warning : KnownPointWarnings(report.known_points)) LogWarning(warning);
+  return warnings;
 }
 
 void WarnOfOtherMarkers(const ShapeMetrics& metrics) {

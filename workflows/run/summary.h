@@ -26,8 +26,9 @@ std::string ErrorText(const Statistics& statistics);
 // Quotes a path for a shell where that is needed.
 std::string ShellQuote(const std::string& text);
 
-// Logs which measured distances and known points contradict the shape.
-void LogContradictions(const ShapeExportReport& report);
+// Returns the warnings logged so far, for the report, and then logs which measured distances and
+// known points contradict the shape: the report has these as key numbers.
+std::vector<std::string> WarningsBeforeContradictions(const ShapeExportReport& report);
 
 // Warns of markers that the layout does not name.
 void WarnOfOtherMarkers(const ShapeMetrics& metrics);
