@@ -8,6 +8,7 @@
 
 #include "reconstruct/registration/motion_field.h"
 #include "reconstruct/registration/repeated_frames.h"
+#include "reconstruct/registration/track_gaps.h"
 #include "reconstruct/registration/track_smoothing.h"
 
 namespace velamap {
@@ -23,7 +24,8 @@ using RowMajorTracks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eig
 
 struct TimedFrame {
   const FrameDetections* detections = nullptr;
-  double time_s = 0.0;  // after the frame whose corners' motions are sought
+  const MarkerPlaces* places = nullptr;  // also of markers that the frame lacks (track_gaps.h)
+  double time_s = 0.0;                   // after the frame whose corners' motions are sought
 };
 
 // That frame and those around it, in the order of time.
@@ -51,23 +53,25 @@ class PlaceWeights {
 // noise in the velocities makes the estimated readout time too short.
 struct MarkerMotion {
   MotionVector motion;
-  // Variances of the velocity: due to the errors of the corners, which differ between markers, and
-  // due to what happens between the frames, which they share.
+  // Variances of the velocity: of errors that differ between markers, and of those due to what
+  // happens between the frames, which the markers share.
   double noise_variance = 0.0;
   double common_variance = 0.0;
 };
 
 // Returns nothing unless the marker is seen in four frames (or three, if there are no more), and
 // before and after this frame if there are such frames.
-std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, int marker_id,
+std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, const MarkerDetection& marker,
                                           PlaceWeights* weights) {
   const std::size_t min_num_frames = std::clamp<std::size_t>(window.size(), 3, 4);
   std::vector<double> times_s;
   Eigen::Matrix2Xd places_px(2, static_cast<Eigen::Index>(window.size()));
   for (const TimedFrame& frame : window) {
-    const MarkerDetection* seen = FindMarkerById(frame.detections->markers, marker_id);
-    if (seen == nullptr) continue;
-    places_px.col(static_cast<Eigen::Index>(times_s.size())) = CornerMean(*seen);
+    const auto place = frame.places->find(marker.marker_id);
+    const bool is_this_frame = frame.time_s == 0;  // or one that repeats it, with its own places
+    if (!is_this_frame && place == frame.places->end()) continue;
+    places_px.col(static_cast<Eigen::Index>(times_s.size())) =
+        is_this_frame ? CornerMean(marker) : place->second;
     times_s.push_back(frame.time_s);
   }
   if (times_s.size() < min_num_frames) return std::nullopt;
@@ -83,25 +87,45 @@ std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, int marker_
                       of_places.motion_variance};
 }
 
-// Returns nothing for fewer than three markers.
-std::optional<MotionField> FitField(const FrameDetections& frame,
-                                    const std::vector<std::optional<MarkerMotion>>& measured) {
-  constexpr std::size_t kMinNumMarkers = 3;
-  std::vector<PlacedMotion> motions;
-  double sum_of_sides_px = 0.0;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    if (!measured[i]) continue;
-    motions.push_back({CornerMean(frame.markers[i]), measured[i]->motion});
-    sum_of_sides_px += QuadMeanSide(frame.markers[i].corners_in_image_px);
+// Markers share the errors due to what happens between the frames only as far as the same frames
+// show them. What a marker that some frames lack has in addition is an error of its own.
+void SplitCommonVariances(std::vector<std::optional<MarkerMotion>>* measured) {
+  double shared = std::numeric_limits<double>::infinity();
+  for (const auto& marker : *measured) {
+    if (marker) shared = std::min(shared, marker->common_variance);
   }
-  if (motions.size() < kMinNumMarkers) return std::nullopt;
-  return MotionField(motions, sum_of_sides_px / static_cast<double>(motions.size()));
+  for (auto& marker : *measured) {
+    if (!marker) continue;
+    marker->noise_variance += marker->common_variance - shared;
+    marker->common_variance = shared;
+  }
 }
 
 struct FrameMotion {
   const DatabaseImage* image = nullptr;
   std::vector<std::optional<MarkerMotion>> measured;  // by marker
   std::optional<MotionField> field;
+
+  // Of a velocity relative to the field, for markers whose own velocities have this variance.
+  double Weight(std::size_t i, double own_variance) const {
+    const double variance = measured[i]->noise_variance + own_variance;
+    return variance > 0 ? 1.0 / variance : 1.0;
+  }
+
+  // No field for fewer than three markers.
+  void FitField(double own_variance) {
+    constexpr std::size_t kMinNumMarkers = 3;
+    std::vector<PlacedMotion> motions;
+    double sum_of_sides_px = 0.0;
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (!measured[i]) continue;
+      const MarkerDetection& marker = image->detections.markers[i];
+      motions.push_back({CornerMean(marker), measured[i]->motion, Weight(i, own_variance)});
+      sum_of_sides_px += QuadMeanSide(marker.corners_in_image_px);
+    }
+    if (motions.size() < kMinNumMarkers) return;
+    field.emplace(motions, sum_of_sides_px / static_cast<double>(motions.size()));
+  }
 
   // The velocity of marker `i` relative to the field.
   Eigen::Vector2d OwnVelocity(std::size_t i) const {
@@ -111,26 +135,40 @@ struct FrameMotion {
 };
 
 // Variance of the coordinates of the markers' velocities relative to the field, beyond noise;
-// infinite if no frame has more markers than are needed to determine the field.
-double OwnVariance(const std::vector<FrameMotion>& frames) {
-  double sum_of_squares = 0.0, sum_of_noise = 0.0, sum_of_degrees = 0.0;
+// infinite if no frame has more markers than are needed to determine the field. The fields were
+// fitted with the weights for `assumed_variance`.
+double OwnVariance(const std::vector<FrameMotion>& frames, double assumed_variance) {
+  double sum_of_squares = 0.0, sum_of_noise = 0.0, sum_of_weights = 0.0;
   for (const FrameMotion& frame : frames) {
     if (!frame.field) continue;
-    double num_markers = 0.0, squares = 0.0, noise = 0.0;
+    double num_markers = 0.0, squares = 0.0, noise = 0.0, weights = 0.0;
     for (std::size_t i = 0; i < frame.measured.size(); ++i) {
       if (!frame.measured[i]) continue;
+      const double weight = frame.Weight(i, assumed_variance);
       num_markers += 1.0;
-      squares += 0.5 * frame.OwnVelocity(i).squaredNorm();
-      noise += frame.measured[i]->noise_variance;
+      squares += 0.5 * weight * frame.OwnVelocity(i).squaredNorm();
+      noise += weight * frame.measured[i]->noise_variance;
+      weights += weight;
     }
-    const double num_degrees = num_markers - (1 + MotionField::kNumTerms);
-    if (!(num_degrees > 0)) continue;
+    const double free_share = 1.0 - (1 + MotionField::kNumTerms) / num_markers;
+    if (!(free_share > 0)) continue;
     sum_of_squares += squares;
-    sum_of_noise += num_degrees / num_markers * noise;
-    sum_of_degrees += num_degrees;
+    sum_of_noise += free_share * noise;
+    sum_of_weights += free_share * weights;
   }
-  if (sum_of_degrees == 0) return std::numeric_limits<double>::infinity();
-  return std::max(0.0, (sum_of_squares - sum_of_noise) / sum_of_degrees);
+  if (sum_of_weights == 0) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, (sum_of_squares - sum_of_noise) / sum_of_weights);
+}
+
+// Fits the fields of all frames and returns OwnVariance().
+double FitFields(std::vector<FrameMotion>* frames) {
+  constexpr int kNumRounds = 3;
+  double own_variance = 0.0;
+  for (int round = 0; round < kNumRounds && std::isfinite(own_variance); ++round) {
+    for (FrameMotion& frame : *frames) frame.FitField(own_variance);
+    own_variance = OwnVariance(*frames, own_variance);
+  }
+  return own_variance;
 }
 
 // Empty if the neighbouring frames show too few markers.
@@ -138,7 +176,7 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
   std::vector<CornerMotion> motions;
   double common_variance = 0.0;  // the field's
   for (const auto& measured : frame.measured) {
-    if (measured) common_variance = std::max(common_variance, measured->common_variance);
+    if (measured) common_variance = measured->common_variance;
   }
   for (std::size_t i = 0; i < frame.measured.size(); ++i) {
     const std::optional<MarkerMotion>& measured = frame.measured[i];
@@ -166,9 +204,15 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
 
 // One exposure of the sensor: the frame that shows it, and those that repeat that frame.
 struct Exposure {
-  double time_s = 0.0;
   std::vector<const DatabaseImage*> frames;
+  TimedPlaces track;  // of the first of the frames
 };
+
+// Whether the second frame follows the first so soon that one path of a marker passes through both.
+bool AreNear(const DatabaseImage& frame, const DatabaseImage& next) {
+  const double step_s = *next.detections.time_s - *frame.detections.time_s;
+  return step_s > 0 && step_s <= kLongestStep_s && frame.camera_id == next.camera_id;
+}
 
 // In the order of time. Photographs are left out.
 std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
@@ -181,29 +225,33 @@ std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
   });
   const std::vector<bool> is_repeated = FindRepeatedFrames(frames);
   std::vector<Exposure> exposures;
+  std::vector<TimedPlaces> tracks;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!is_repeated[i]) exposures.push_back({*frames[i]->detections.time_s, {}});
+    if (!is_repeated[i]) {
+      if (i > 0) tracks.back().is_near_next = AreNear(*exposures.back().frames.front(), *frames[i]);
+      exposures.emplace_back();
+      tracks.push_back(PlacesOf(frames[i]->detections));
+    }
     exposures.back().frames.push_back(frames[i]);
   }
+  FillGaps(&tracks);
+  for (std::size_t i = 0; i < exposures.size(); ++i) exposures[i].track = std::move(tracks[i]);
   return exposures;
 }
 
-// The frames within `reach` exposures of exposure `idx`, none more than kLongestStep_s from the
-// next.
+// The frames within `reach` exposures of exposure `idx`, without any that is not near the next.
 FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx,
                          std::size_t reach) {
-  const auto are_near = [&](std::size_t i) {  // this one and the next
-    const double step_s = exposures[i + 1].time_s - exposures[i].time_s;
-    return step_s > 0 && step_s <= kLongestStep_s &&
-           exposures[i].frames.front()->camera_id == exposures[i + 1].frames.front()->camera_id;
-  };
   std::size_t begin = idx, end = idx + 1;
-  while (begin > 0 && begin + reach > idx && are_near(begin - 1)) --begin;
-  while (end < exposures.size() && end <= idx + reach && are_near(end - 1)) ++end;
+  while (begin > 0 && begin + reach > idx && exposures[begin - 1].track.is_near_next) --begin;
+  while (end < exposures.size() && end <= idx + reach && exposures[end - 1].track.is_near_next) {
+    ++end;
+  }
   FrameWindow window;
   for (std::size_t i = begin; i < end; ++i) {
-    window.push_back(
-        {&exposures[i].frames.front()->detections, exposures[i].time_s - exposures[idx].time_s});
+    const TimedPlaces& track = exposures[i].track;
+    window.push_back({&exposures[i].frames.front()->detections, &track.places,
+                      track.time_s - exposures[idx].track.time_s});
   }
   return window;
 }
@@ -263,22 +311,19 @@ CornerMotions CornerMotionsOf(const std::vector<DatabaseImage>& images) {
   const TrackModel model = FitTrackModel(exposures);
   std::vector<FrameMotion> frames;
   for (std::size_t i = 0; i < exposures.size(); ++i) {
-    FrameWindow window = WindowAround(exposures, i, kReach);
+    const FrameWindow window = WindowAround(exposures, i, kReach);
     PlaceWeights weights(model);
     for (const DatabaseImage* image : exposures[i].frames) {
-      for (TimedFrame& timed : window) {
-        if (timed.time_s == 0) timed.detections = &image->detections;
-      }
       FrameMotion frame;
       frame.image = image;
       for (const MarkerDetection& marker : image->detections.markers) {
-        frame.measured.push_back(MeasureMotion(window, marker.marker_id, &weights));
+        frame.measured.push_back(MeasureMotion(window, marker, &weights));
       }
-      frame.field = FitField(image->detections, frame.measured);
+      SplitCommonVariances(&frame.measured);
       frames.push_back(std::move(frame));
     }
   }
-  const double own_variance = OwnVariance(frames);
+  const double own_variance = FitFields(&frames);
   CornerMotions motions;
   for (const FrameMotion& frame : frames) {
     std::vector<CornerMotion> of_image = MotionsOf(frame, own_variance);

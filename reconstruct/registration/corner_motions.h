@@ -26,14 +26,16 @@ using CornerMotions = std::map<ImageId, std::vector<CornerMotion>>;
 
 // Motions relative to the picture, whether camera, boat or cloth moves. The motion of a marker is
 // that of a smooth path through its places in the frame and in up to eight before and after it
-// (track_smoothing.h). How it changes within a marker, and the motion of markers that the
-// neighbouring frames do not show, follow from the field of all markers of the image
-// (motion_field.h). The difference between the velocity of a marker and that of the field is shrunk
-// by the share of noise in it. This gives E(velocity | frames), whose errors do not bias what is
-// estimated from it (Carroll et al., "Measurement error in nonlinear models", 2006, on Berkson
-// errors and regression calibration). Frames more than 0.15 s apart are not used together, and
-// repeated ones (repeated_frames.h) count as one frame at the time of the first. Photographs have
-// no motions. Images without motions are missing.
+// (track_smoothing.h). Frames between two that show it get a place from the other markers
+// (track_gaps.h), because otherwise each marker would follow a shake as its own frames happen to
+// show it, and these differences would pass for motion. How the motion changes within a marker, and
+// the motion of markers that the neighbouring frames do not show, follow from the field of all
+// markers of the image (motion_field.h). The difference between the velocity of a marker and that
+// of the field is shrunk by the share of noise in it. This gives E(velocity | frames), whose errors
+// do not bias what is estimated from it (Carroll et al., "Measurement error in nonlinear models",
+// 2006, on Berkson errors and regression calibration). Frames more than 0.15 s apart are not used
+// together, and repeated ones (repeated_frames.h) count as one frame at the time of the first.
+// Photographs have no motions. Images without motions are missing.
 CornerMotions CornerMotionsOf(const std::vector<DatabaseImage>& images);
 
 }  // namespace velamap

@@ -52,28 +52,35 @@ Eigen::MatrixXd KnownCombinations(const Eigen::MatrixXd& terms, const Eigen::Mat
 
 MotionField::MotionField(const std::vector<PlacedMotion>& motions, double side_px) {
   const auto num = static_cast<Eigen::Index>(motions.size());
-  const double share = 1.0 / static_cast<double>(motions.size());
-  for (const PlacedMotion& known : motions) {
-    center_px_ += share * known.x_in_image_px;
-    mean_ += share * known.motion;
+  Eigen::VectorXd shares(num);  // of the sum of the weights
+  for (Eigen::Index i = 0; i < num; ++i) shares[i] = motions[static_cast<std::size_t>(i)].weight;
+  shares /= shares.sum();
+  for (Eigen::Index i = 0; i < num; ++i) {
+    const PlacedMotion& known = motions[static_cast<std::size_t>(i)];
+    center_px_ += shares[i] * known.x_in_image_px;
+    mean_ += shares[i] * known.motion;
   }
   double variance_px2 = 0.0;
-  for (const PlacedMotion& known : motions) {
-    variance_px2 += share * (known.x_in_image_px - center_px_).squaredNorm();
+  for (Eigen::Index i = 0; i < num; ++i) {
+    const PlacedMotion& known = motions[static_cast<std::size_t>(i)];
+    variance_px2 += shares[i] * (known.x_in_image_px - center_px_).squaredNorm();
   }
   unit_px_ = std::max(side_px, std::sqrt(variance_px2));
   Eigen::MatrixXd terms(num, kNumTerms), values(num, 4);
   Eigen::MatrixXd within = Eigen::MatrixXd::Zero(kNumTerms, kNumTerms);
   for (Eigen::Index i = 0; i < num; ++i) {
-    const auto& [x_in_image_px, motion] = motions[static_cast<std::size_t>(i)];
-    const Eigen::Vector2d place = PlaceOf(x_in_image_px);
+    const PlacedMotion& known = motions[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d place = PlaceOf(known.x_in_image_px);
     terms.row(i) = TermsAt(place);
-    values.row(i) = (motion - mean_).transpose();
+    values.row(i) = (known.motion - mean_).transpose();
     const Eigen::MatrixXd change = 0.5 * side_px / unit_px_ * TermGradients(place);
-    within += change.transpose() * change;
+    within += shares[i] * change.transpose() * change;
   }
-  mean_terms_ = terms.colwise().mean();
+  mean_terms_ = shares.transpose() * terms;
   terms.rowwise() -= mean_terms_;
+  const Eigen::VectorXd root_shares = shares.cwiseSqrt();
+  terms = root_shares.asDiagonal() * terms;
+  values = root_shares.asDiagonal() * values;
   const Eigen::MatrixXd known = KnownCombinations(terms, within);
   coefficients_ = known * ((terms * known).transpose() * values);
 }

@@ -14,6 +14,7 @@ using MotionVector = Eigen::Matrix<double, 4, 1>;
 struct PlacedMotion {
   Eigen::Vector2d x_in_image_px;
   MotionVector motion;
+  double weight = 1.0;
 };
 
 // A quadratic polynomial of the place. A camera that turns moves the picture of whatever it sees
@@ -25,10 +26,11 @@ class MotionField {
   static constexpr int kNumTerms = 5;  // without the constant
   using Terms = Eigen::Matrix<double, 1, kNumTerms>;
 
-  // Fits the motions of markers whose mean side is `side_px`. Leaves out combinations of terms that
-  // change more over half a side (RMS over the markers) than from marker to marker. Across a single
-  // row of markers, for example, such terms would be extrapolated to the corners, which multiplies
-  // the noise of the motions. `motions` must not be empty.
+  // Fits the motions, by least squares, of markers whose mean side is `side_px`. Leaves out
+  // combinations of terms that change more over half a side (RMS over the markers) than from marker
+  // to marker. Across a single row of markers, for example, such terms would be extrapolated to the
+  // corners, which multiplies the noise of the motions. `motions` must not be empty, and their
+  // weights are positive.
   MotionField(const std::vector<PlacedMotion>& motions, double side_px);
 
   MotionVector At(const Eigen::Vector2d& x_in_image_px) const;

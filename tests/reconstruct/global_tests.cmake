@@ -27,6 +27,7 @@ velamap_test(NAME reconstruct_global_test LABEL unit
     registration/corner_motions_test.cc
     registration/motion_field_test.cc
     registration/repeated_frames_test.cc
+    registration/track_gaps_test.cc
     registration/track_smoothing_test.cc
     map/marker_rivals_test.cc
     map/scene_map.cc

@@ -170,6 +170,64 @@ TEST(CornerMotions, AreRightWhereFramesAreRepeated) {
   }
 }
 
+// RMS error of the velocities in a clip of a hand that shakes at up to 9 Hz, which shows each
+// marker in `share` of the frames; and the mean of the sigmas over it.
+struct ShakyClip {
+  double rms_px_s = 0.0, mean_sigma_px_s = 0.0;
+};
+
+ShakyClip MeasureShakyClip(double share) {
+  constexpr int kNumFrames = 60, kAtEnd = 4;
+  constexpr double kFrequencies_Hz[] = {0.4, 0.7, 1.3, 2.3, 4.1, 6.0, 9.0};
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise_px(0.0, 0.1);
+  std::bernoulli_distribution is_seen(share);
+  const FrameDetections photograph = Photograph(24);
+  std::vector<DatabaseImage> frames;
+  std::vector<double> expected_px_s;
+  for (int i = 0; i < kNumFrames; ++i) {
+    const double time_s = i / 30.0;
+    double shift_px = 0.0, velocity_px_s = 0.0;
+    for (const double frequency_Hz : kFrequencies_Hz) {
+      const double turn_rad_s = 2 * 3.14159265358979 * frequency_Hz;
+      shift_px += 40 / turn_rad_s * std::sin(turn_rad_s * time_s + turn_rad_s);
+      velocity_px_s += 40 * std::cos(turn_rad_s * time_s + turn_rad_s);
+    }
+    expected_px_s.push_back(velocity_px_s);
+    DatabaseImage frame{static_cast<ImageId>(i + 1), 1, photograph};
+    frame.detections.time_s = time_s;
+    frame.detections.markers.clear();
+    for (MarkerDetection marker : photograph.markers) {
+      if (!is_seen(random)) continue;
+      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+        x_px += Eigen::Vector2d(shift_px + noise_px(random), noise_px(random));
+      }
+      frame.detections.markers.push_back(marker);
+    }
+    frames.push_back(std::move(frame));
+  }
+  std::vector<double> errors_px_s;
+  ShakyClip clip;
+  for (const auto& [image_id, found] : CornerMotionsOf(frames)) {
+    if (image_id <= kAtEnd || image_id > kNumFrames - kAtEnd) continue;
+    for (const CornerMotion& motion : found) {
+      errors_px_s.push_back(motion.velocity_px_s.x() - expected_px_s[image_id - 1]);
+      clip.mean_sigma_px_s += motion.velocity_sigma_px_s;
+    }
+  }
+  clip.rms_px_s = Rms(errors_px_s);
+  clip.mean_sigma_px_s /= static_cast<double>(errors_px_s.size());
+  return clip;
+}
+
+// A marker whose neighbouring frames are missing does not show a shake as the others do.
+TEST(CornerMotions, OfMarkersThatSomeFramesLackFollowTheOthers) {
+  const ShakyClip whole = MeasureShakyClip(1.0), gappy = MeasureShakyClip(0.6);
+  EXPECT_LT(gappy.rms_px_s, 2 * whole.rms_px_s);
+  EXPECT_LT(gappy.rms_px_s, 2 * gappy.mean_sigma_px_s);
+  EXPECT_GT(gappy.rms_px_s, 0.5 * gappy.mean_sigma_px_s);
+}
+
 TEST(CornerMotions, MarkersThatAreMissingBesideMoveWithTheirNeighbours) {
   const FrameDetections photograph = Photograph(8);
   std::vector<DatabaseImage> frames = {FrameAt(-0.03, 1, photograph), FrameAt(0, 2, photograph),
