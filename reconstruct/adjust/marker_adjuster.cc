@@ -12,6 +12,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/log.h"
+#include "importer/text/id_ranges.h"
 #include "reconstruct/adjust/bent_markers.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
@@ -146,6 +147,26 @@ void MarkerAdjuster::AdjustWithSizes() {
   }
 }
 
+void MarkerAdjuster::AllowForMotion() {
+  // Markers were where most of their images show them, and come to be where the mean of all does.
+  constexpr int kNumRounds = 3;
+  for (int round = 0; round < kNumRounds; ++round) {
+    std::vector<RemovedObservation> lost;
+    std::map<int, double> factors = MotionFactorsOf(WithRemovedCorners(&lost), solution_);
+    if (factors.empty() && solution_.weights.marker_factors.empty()) return;
+    solution_.weights.marker_factors = std::move(factors);
+    AdjustWithSizes();
+  }
+  std::vector<int> moving_ids;
+  for (const auto& [marker_id, factor] : solution_.weights.marker_factors) {
+    moving_ids.push_back(marker_id);
+  }
+  if (!moving_ids.empty()) {
+    LogInfo("markers that move relative to the others, which their sigmas contain: {}",
+            IdRanges(moving_ids));
+  }
+}
+
 std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjuster begin) const {
   const std::optional<RefinedIntrinsics> refined = ChooseIntrinsics(solution_);
   if (!refined) return std::nullopt;
@@ -271,8 +292,16 @@ std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
   return CamerasOf(solution_.model, *Linearize(solution_));
 }
 
-int MarkerAdjuster::ReviseCorners() {
+Model MarkerAdjuster::WithRemovedCorners(std::vector<RemovedObservation>* lost) const {
   constexpr double kAnyError = std::numeric_limits<double>::infinity();
+  Model model = solution_.model;
+  for (const RemovedObservation& observation : summary_.removed) {
+    if (!RestoreObservation(observation, kAnyError, &model)) lost->push_back(observation);
+  }
+  return model;
+}
+
+int MarkerAdjuster::ReviseCorners() {
   using Key = std::pair<Point3DId, ImageId>;
   const auto keys_of = [](const std::vector<RemovedObservation>& observations) {
     std::set<Key> keys;
@@ -283,10 +312,7 @@ int MarkerAdjuster::ReviseCorners() {
   };
   const std::set<Key> before = keys_of(summary_.removed);
   std::vector<RemovedObservation> removed;
-  Model candidate = solution_.model;
-  for (const RemovedObservation& observation : summary_.removed) {
-    if (!RestoreObservation(observation, kAnyError, &candidate)) removed.push_back(observation);
-  }
+  Model candidate = WithRemovedCorners(&removed);
   RemoveOutliers(ResidualsOfModel(candidate, solution_), solution_.options.outlier_sigmas,
                  &candidate, &removed);
   const std::set<Key> after = keys_of(removed);

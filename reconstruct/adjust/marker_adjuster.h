@@ -39,7 +39,11 @@ class MarkerAdjuster {
   // come to fit, until nothing changes.
   void AdjustWithSizes();
 
-  // The three steps above, with AdjustToBentMarkers() (bent_markers.h) after the first.
+  // Counts markers less that move relative to the others (MotionFactors()), and adjusts with the
+  // sizes again. Call this after AdjustToCorners().
+  void AllowForMotion();
+
+  // The first three steps, with AdjustToBentMarkers() (bent_markers.h) after the first.
   void AdjustToCorners();
 
   // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the
@@ -74,6 +78,9 @@ class MarkerAdjuster {
   MarkerAdjustmentSummary TakeSummary();
 
  private:
+  // Returns the model with the corners that were removed from it. `lost` gets those whose points or
+  // images are gone.
+  Model WithRemovedCorners(std::vector<RemovedObservation>* lost) const;
   // Returns the number of corners that were removed or restored.
   int ReviseCorners();
   void RemoveUnderconstrainedParts();

@@ -21,6 +21,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   std::optional<MarkerAdjuster> better = given.WithBetterCalibration(begin);
   MarkerAdjuster& adjuster = better ? *better : given;
   if (adjuster.AddScaleBars()) adjuster.AdjustWithSizes();
+  adjuster.AllowForMotion();
   adjuster.Finish();
   *model = adjuster.TakeModel();
   UntieTurnedCameras(turned, model);

@@ -166,6 +166,11 @@ std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSol
   return EvaluateCorners(MakeProblem(solution, WithoutLoss(solution.weights), model, &state));
 }
 
+std::map<int, double> MotionFactorsOf(const Model& model, const MarkerSolution& solution) {
+  MarkerState state = MakeState(solution, model);
+  return MotionFactors(MakeProblem(solution, WithoutLoss(solution.weights), model, &state), model);
+}
+
 double SumOfSquares(const MarkerSolution& solution) {
   MarkerState state = MakeState(solution, solution.model);
   const MarkerProblem problem = MakeProblem(solution, solution.weights, solution.model, &state);

@@ -73,6 +73,9 @@ double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution);
 
+// MotionFactors() of the corners of another model with the weights of the solution.
+std::map<int, double> MotionFactorsOf(const Model& model, const MarkerSolution& solution);
+
 // Sum of the squares of all residuals in sigmas, as reduced by the loss.
 double SumOfSquares(const MarkerSolution& solution);
 

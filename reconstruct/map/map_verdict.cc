@@ -103,6 +103,28 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
   return 1 / std::sqrt(DecomposeSymmetric(of_center).values[0]);
 }
 
+// MapNoise::factor_of_marker. Views beyond the tolerance of a growing map may show another marker
+// and do not count.
+std::vector<double> FactorsOfMarkers(const MapProblem& problem, const MapSolution& solution) {
+  constexpr std::size_t kMinNumViews = 16;
+  std::vector<double> factors(problem.markers.size(), 0.0);
+  for (std::size_t marker_idx = 0; marker_idx < problem.markers.size(); ++marker_idx) {
+    if (solution.shape_from_marker[marker_idx].empty()) continue;
+    std::vector<double> relative;
+    for (const int idx : problem.markers[marker_idx].observation_idxs) {
+      const MapObservation& observation = problem.Observation(idx);
+      if (!solution.Pose(observation.frame_idx)) continue;
+      const double error_px = ReprojectionError(problem, solution, observation);
+      if (error_px <= GrowthTolerance(observation)) {
+        relative.push_back(error_px / observation.sigma_px);
+      }
+    }
+    if (relative.size() < kMinNumViews) continue;
+    factors[marker_idx] = SigmaFromMedian(Median(std::move(relative)), kChiSquaredMedian8);
+  }
+  return factors;
+}
+
 }  // namespace
 
 MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
@@ -112,6 +134,7 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
   std::vector<double> relative, errors_px, single_marker_px;
   std::vector<std::vector<double>> relative_of_frame(problem.frames.size());
   std::vector<std::vector<double>> single_of_frame(problem.frames.size());
+  noise.factor_of_marker = FactorsOfMarkers(problem, solution);
   for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
     if (!solution.is_inlier[idx]) continue;
     const MapObservation& observation = problem.observations[idx];
@@ -145,7 +168,7 @@ double FinalTolerance(const MapObservation& observation, const MapNoise& noise) 
   constexpr double kSigmas = 5.0;
   const double factor = std::max(
       {noise.factor, noise.factor_of_frame[static_cast<std::size_t>(observation.frame_idx)],
-       kMinNoiseFactor});
+       noise.factor_of_marker[static_cast<std::size_t>(observation.marker_idx)], kMinNoiseFactor});
   return kSigmas * factor * observation.sigma_px;
 }
 

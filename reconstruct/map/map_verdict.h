@@ -18,6 +18,10 @@ struct MapNoise {
   // in single frames (0: not registered).
   double factor = 1.0;
   std::vector<double> factor_of_frame;  // by frame_idx
+  // In all views of single markers, by marker_idx (0: too few views). It is large if the marker
+  // moves relative to the others, as on a flapping leech. Without it, the views that agree with
+  // each other by chance would decide its place, instead of the mean of all.
+  std::vector<double> factor_of_marker;
   // The same for markers whose poses are estimated one by one: the noise of the frame's corners,
   // including blur, whether or not the frame fits the map.
   std::vector<double> single_marker_factor_of_frame;

@@ -211,13 +211,16 @@ class ProblemBuilder {
     const ModelImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
     std::vector<CornerObservation> observations(view.size());
+    const auto found_factor = weights_.marker_factors.find(marker->marker_id);
+    const double marker_factor =
+        found_factor == weights_.marker_factors.end() ? 1.0 : found_factor->second;
     for (std::size_t i = 0; i < view.size(); ++i) {
       const auto& [slot, point3D_id, element] = view[i];
       CornerObservation& observation = observations[i];
       observation.slot = slot;
       observation.x_in_image_px = image.points2D.at(element.point2D_idx).x_in_image_px;
-      observation.sigma_px =
-          weights_.corner_factor * CornerSigma(options_, sigmas_px, element.point2D_idx);
+      observation.sigma_px = marker_factor * weights_.corner_factor *
+                             CornerSigma(options_, sigmas_px, element.point2D_idx);
       if (EstimatesInset()) {
         observation.inset_direction = InsetDirection(camera, image.cam_from_world, *marker, slot);
       }
@@ -229,6 +232,7 @@ class ProblemBuilder {
       }
       result_.corners.emplace_back(point3D_id, element);
       result_.corner_sigmas_px.push_back(observation.sigma_px);
+      result_.marker_factors.push_back(marker_factor);
     }
     result_.corner_residuals.push_back(AddResidual(
         std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),

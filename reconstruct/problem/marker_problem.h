@@ -20,6 +20,8 @@ namespace velamap {
 // Weights that change from one minimization to the next.
 struct MarkerWeights {
   double corner_factor = 1.0;  // multiplies the sigmas of all corners
+  // Multiply those of single markers, which move relative to the others (MotionFactors()).
+  std::map<int, double> marker_factors;
   double loss_sigmas = 0.0;
   double print_tolerance = 0.0;
   // 1 sigma of the relative scale error caused by an inset that is not estimated.
@@ -58,6 +60,7 @@ struct MarkerProblem {
   // One for every pair of residuals of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
   std::vector<double> corner_sigmas_px;  // by which the residuals were divided, by `corners`
+  std::vector<double> marker_factors;    // of these sigmas, by `corners`; 1 for most
 
   // The corners' residuals, then the priors'.
   std::vector<ceres::ResidualBlockId> ResidualsWithoutBars() const {

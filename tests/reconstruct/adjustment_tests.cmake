@@ -8,6 +8,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     geometry/intrinsics_prior_test.cc
     adjust/calibration_refinement_test.cc
     adjust/marker_adjustment_test.cc
+    adjust/moving_marker_test.cc
     adjust/common_inset_test.cc
     adjust/rolling_shutter_test.cc
     problem/rolling_shutter_test.cc

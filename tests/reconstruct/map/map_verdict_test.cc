@@ -93,11 +93,11 @@ TEST(EstimateNoise, BlurredFrameHasALargeFactorAndAnUnregisteredOneNone) {
   EXPECT_NEAR(noise.factor, 1.0, 0.12);
 }
 
-TEST(FinalTolerance, GrowsWithTheNoiseOfMapAndFrame) {
+TEST(FinalTolerance, GrowsWithTheNoiseOfMapFrameAndMarker) {
   MapObservation observation;
   observation.sigma_px = 0.2;
   MapNoise noise;
-  noise.factor_of_frame = {0.0};
+  noise.factor_of_frame = noise.factor_of_marker = {0.0};
   noise.factor = 1.0;
   const double at_1 = FinalTolerance(observation, noise);
   // Beyond what the RMS of four corners with 0.2 px in each coordinate can be by chance.
@@ -108,8 +108,10 @@ TEST(FinalTolerance, GrowsWithTheNoiseOfMapAndFrame) {
   EXPECT_DOUBLE_EQ(FinalTolerance(observation, noise), 4 * at_1);
   observation.sigma_px = 0.4;
   EXPECT_DOUBLE_EQ(FinalTolerance(observation, noise), 8 * at_1);
+  noise.factor_of_marker = {6.0};
+  EXPECT_DOUBLE_EQ(FinalTolerance(observation, noise), 12 * at_1);
   // Exact corners do not make it zero.
-  noise.factor = noise.factor_of_frame[0] = 0.0;
+  noise.factor = noise.factor_of_frame[0] = noise.factor_of_marker[0] = 0.0;
   EXPECT_GT(FinalTolerance(observation, noise), 0.1 * at_1);
 }
 
@@ -273,6 +275,7 @@ double DistanceSigmaOfOneView(SceneMap map, int num_times, double* size_sigma) {
   MapSolution solution = map.TrueSolution();
   MapNoise noise;
   noise.factor_of_frame.assign(map.problem.frames.size(), 1.0);
+  noise.factor_of_marker.assign(map.problem.markers.size(), 0.0);
   const int marker_idx = map.MarkerIdx(kMiddleId);
   std::vector<int>& idxs =
       map.problem.markers[static_cast<std::size_t>(marker_idx)].observation_idxs;
