@@ -175,10 +175,10 @@ std::string ShellQuote(const std::string& text) {
 }
 
 std::vector<std::string> WarningsBeforeContradictions(const ShapeExportReport& report) {
-  std::vector<std::string> warnings = LoggedWarnings();
+  std::vector<std::string> so_far = LoggedWarnings();
   for (const std::string& warning : ScaleWarnings(report.audit)) LogWarning(warning);
   for (const std::string& warning : KnownPointWarnings(report.known_points)) LogWarning(warning);
-  return warnings;
+  return so_far;
 }
 
 void WarnOfOtherMarkers(const ShapeMetrics& metrics) {
