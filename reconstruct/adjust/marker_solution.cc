@@ -168,7 +168,8 @@ std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSol
 
 std::map<int, double> MotionFactorsOf(const Model& model, const MarkerSolution& solution) {
   MarkerState state = MakeState(solution, model);
-  return MotionFactors(MakeProblem(solution, WithoutLoss(solution.weights), model, &state), model);
+  return MotionFactors(MakeProblem(solution, WithoutLoss(solution.weights), model, &state),
+                       solution.weights.marker_factors, model);
 }
 
 double SumOfSquares(const MarkerSolution& solution) {

@@ -46,8 +46,10 @@ std::map<int, std::vector<double>> SidesPx(const Model& model) {
 // Mean residual of a marker in an image, in sigmas of a mean of independent corners.
 using MeanResiduals = std::vector<Eigen::Vector2d>;
 
-// By marker, in the natural order of the images' names.
+// By marker, in the natural order of the images' names. Sigmas are those without the factors
+// `present`, so that factors can be found anew.
 std::map<int, MeanResiduals> MeanResidualsByMarker(const MarkerProblem& problem,
+                                                   const std::map<int, double>& present,
                                                    const Model& model) {
   struct Sum {
     Eigen::Vector2d residuals = Eigen::Vector2d::Zero();
@@ -60,13 +62,14 @@ std::map<int, MeanResiduals> MeanResidualsByMarker(const MarkerProblem& problem,
   std::map<ImageId, std::size_t> image_idxs;
   for (std::size_t i = 0; i < images.size(); ++i) image_idxs.emplace(images[i]->image_id, i);
   const std::vector<double> residuals = CornerResiduals(problem);
-  // The sigmas without the factor of the marker, so that factors can be found anew.
   std::map<int, std::map<std::size_t, Sum>> sums;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     const auto& [point3D_id, element] = problem.corners[i];
-    Sum& sum = sums[CornerFromPoint3DId(point3D_id).marker_id][image_idxs.at(element.image_id)];
-    sum.residuals +=
-        problem.marker_factors[i] * Eigen::Vector2d(residuals[2 * i], residuals[2 * i + 1]);
+    const int marker_id = CornerFromPoint3DId(point3D_id).marker_id;
+    const auto factor = present.find(marker_id);
+    Sum& sum = sums[marker_id][image_idxs.at(element.image_id)];
+    sum.residuals += (factor == present.end() ? 1.0 : factor->second) *
+                     Eigen::Vector2d(residuals[2 * i], residuals[2 * i + 1]);
     sum.num_corners += 1.0;
   }
   std::map<int, MeanResiduals> means;
@@ -108,12 +111,13 @@ double IndependentVariance(MeanResiduals residuals) {
 
 }  // namespace
 
-std::map<int, double> MotionFactors(const MarkerProblem& problem, const Model& model) {
+std::map<int, double> MotionFactors(const MarkerProblem& problem,
+                                    const std::map<int, double>& present, const Model& model) {
   constexpr std::size_t kMinNumImages = 16;
   constexpr double kMinFactor = 2.0;
   std::map<int, double> variances;
   std::vector<double> all;
-  for (const auto& [marker_id, residuals] : MeanResidualsByMarker(problem, model)) {
+  for (const auto& [marker_id, residuals] : MeanResidualsByMarker(problem, present, model)) {
     if (residuals.size() < kMinNumImages) continue;
     all.push_back(variances[marker_id] = IndependentVariance(residuals));
   }

@@ -34,8 +34,10 @@ VarianceFactor RobustVarianceFactor(const std::vector<CornerResidual>& corners, 
 // variance of the marker's mean residuals of each image, times the number of images that count as
 // one independent image (the sum of the autocorrelations up to their first zero), relative to the
 // median marker and to calibrated sigmas. Holds only factors above 2, of markers that enough images
-// show. `problem` has no loss; the natural order of the images' names is that of time.
-std::map<int, double> MotionFactors(const MarkerProblem& problem, const Model& model);
+// show. `problem` has no loss and was made with the factors `present`; the natural order of
+// the images' names is that of time.
+std::map<int, double> MotionFactors(const MarkerProblem& problem,
+                                    const std::map<int, double>& present, const Model& model);
 
 // Takes the corners beyond `max_sigmas` out of the model and appends them to `removed`.
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,

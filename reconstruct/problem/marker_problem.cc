@@ -232,7 +232,6 @@ class ProblemBuilder {
       }
       result_.corners.emplace_back(point3D_id, element);
       result_.corner_sigmas_px.push_back(observation.sigma_px);
-      result_.marker_factors.push_back(marker_factor);
     }
     result_.corner_residuals.push_back(AddResidual(
         std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),

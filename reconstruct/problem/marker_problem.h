@@ -60,7 +60,6 @@ struct MarkerProblem {
   // One for every pair of residuals of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
   std::vector<double> corner_sigmas_px;  // by which the residuals were divided, by `corners`
-  std::vector<double> marker_factors;    // of these sigmas, by `corners`; 1 for most
 
   // The corners' residuals, then the priors'.
   std::vector<ceres::ResidualBlockId> ResidualsWithoutBars() const {
