@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "importer/base/error.h"
+#include "importer/base/statistics.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/problem/error_correlation.h"
 #include "reconstruct/problem/marker_uncertainty.h"
@@ -147,8 +148,9 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization) {
   // Codecs predict a frame from others as if all its rows had moved alike. On rendered walls, H.264
-  // makes the time 0.1 to 0.9 % shorter, 0.7 % RMS; without loss it is right to 0.1 %.
-  constexpr double kOfTime = 0.007;
+  // makes the time 0.1 to 0.9 % shorter, 0.7 % RMS; without loss it is right to 0.1 %. Noise of the
+  // corners makes it shorter, too: in two clips of shaky hands, white noise of 0.1 px by 2 to 3 %.
+  constexpr double kOfTime = 0.007, kOfTimeByNoise_1_px = 0.15;
   const auto& [state, problem, jacobian, covariance] = linearization;
   const int column = GlobalColumn(problem, &state.rolling_shutter_s);
   const std::vector<int> groups = GroupImages(solution.model, kNumCorrelationGroups);
@@ -158,7 +160,10 @@ double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
   const double factor = num_groups > 1 ? of_groups * StudentFactor(num_groups - 1) : of_groups;
   const double by_motion_s = SigmaByImageErrors(problem, jacobian, covariance, column,
                                                 SharedShiftErrors(solution, linearization));
-  return std::hypot(factor * independent_sigma_s, by_motion_s, kOfTime * state.rolling_shutter_s);
+  const double noise_px = Median(problem.corner_sigmas_px);
+  const double by_bias_s =
+      std::hypot(kOfTime, kOfTimeByNoise_1_px * noise_px) * state.rolling_shutter_s;
+  return std::hypot(factor * independent_sigma_s, by_motion_s, by_bias_s);
 }
 
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {

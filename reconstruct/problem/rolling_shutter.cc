@@ -23,6 +23,7 @@ RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s) {
   using JetVector = Eigen::Matrix<Jet, 2, 1>;
   const Eigen::Vector2d& velocity_px_s = motion.motion.velocity_px_s;
   const Eigen::Vector2d& acceleration_px_s2 = motion.motion.acceleration_px_s2;
+  const Eigen::Vector2d& jerk_px_s3 = motion.motion.jerk_px_s3;
   const Jet readout_s(rolling_shutter_s, 0);
   // A corner at frame time t is seen at t + readout * row(t): derivatives of that by t.
   const Jet time_rate = 1.0 + readout_s * motion.row_by_px.dot(velocity_px_s);
@@ -30,10 +31,16 @@ RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s) {
   const JetVector velocity = velocity_px_s.cast<Jet>() / time_rate;
   const JetVector acceleration =
       (acceleration_px_s2.cast<Jet>() - time_acceleration_1_s * velocity) / (time_rate * time_rate);
+  const Jet time_jerk_1_s2 = readout_s * motion.row_by_px.dot(jerk_px_s3);
+  const JetVector jerk =
+      (jerk_px_s3.cast<Jet>() - 3.0 * time_rate * time_acceleration_1_s * acceleration -
+       time_jerk_1_s2 * velocity) /
+      (time_rate * time_rate * time_rate);
   const Jet since_middle_s = readout_s * motion.row;
   // From the motion at the corner's own row back to the middle row.
   const JetVector shift =
-      since_middle_s * velocity - 0.5 * since_middle_s * since_middle_s * acceleration;
+      since_middle_s *
+      (velocity - since_middle_s * (0.5 * acceleration - since_middle_s / 6.0 * jerk));
   return {{shift.x().a, shift.y().a}, {shift.x().v[0], shift.y().v[0]}};
 }
 

@@ -30,7 +30,7 @@ struct RowShift {
   Eigen::Vector2d value_px, by_shutter_px_s;
 };
 
-// Computes the shift to second order in the time between the two rows. The motion from frame to
+// Computes the shift to third order in the time between the two rows. The motion from frame to
 // frame differs from that of the corner, because each frame shows the corner in another row and
 // thus at another time within the frame.
 RowShift ShiftByRow(const RowMotion& motion, double rolling_shutter_s);

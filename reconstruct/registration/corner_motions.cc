@@ -81,7 +81,7 @@ std::optional<MarkerMotion> MeasureMotion(const FrameWindow& window, const Marke
     return std::nullopt;
   }
   const DerivativeWeights& of_places = weights->At(times_s);
-  const Eigen::Matrix2d derivatives =
+  const Eigen::Matrix<double, 2, 3> derivatives =
       places_px.leftCols(of_places.values.rows()) * of_places.values;
   return MarkerMotion{MotionVector(derivatives.reshaped()), of_places.noise_variance,
                       of_places.motion_variance};
@@ -181,8 +181,8 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
   for (std::size_t i = 0; i < frame.measured.size(); ++i) {
     const std::optional<MarkerMotion>& measured = frame.measured[i];
     if (!measured && !frame.field) return {};
-    // The marker's velocity relative to the field, shrunk by its share of noise. Accelerations are
-    // too noisy to depart from those of the field.
+    // The marker's velocity relative to the field, shrunk by its share of noise. Higher derivatives
+    // are too noisy to depart from those of the field.
     MotionVector own = MotionVector::Zero();
     double unknown_variance = std::isfinite(own_variance) ? own_variance : 0.0;
     if (measured) {
@@ -194,7 +194,7 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
     for (const Eigen::Vector2d& x_px : frame.image->detections.markers[i].corners_in_image_px) {
       // Within a marker, the velocity changes as in the field.
       const MotionVector motion = frame.field ? frame.field->At(x_px) + own : measured->motion;
-      motions.push_back({motion.head<2>(), motion.tail<2>(),
+      motions.push_back({motion.head<2>(), motion.segment<2>(2), motion.tail<2>(),
                          std::sqrt(common_variance + unknown_variance),
                          std::sqrt(common_variance)});
     }

@@ -15,6 +15,7 @@ namespace velamap {
 struct CornerMotion {
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d acceleration_px_s2 = Eigen::Vector2d::Zero();
+  Eigen::Vector2d jerk_px_s3 = Eigen::Vector2d::Zero();
   // 1 sigma of a coordinate of the velocity, and the part of it that all corners of the image
   // share. 0: unknown.
   double velocity_sigma_px_s = 0.0;

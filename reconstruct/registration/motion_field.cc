@@ -66,7 +66,7 @@ MotionField::MotionField(const std::vector<PlacedMotion>& motions, double side_p
     variance_px2 += shares[i] * (known.x_in_image_px - center_px_).squaredNorm();
   }
   unit_px_ = std::max(side_px, std::sqrt(variance_px2));
-  Eigen::MatrixXd terms(num, kNumTerms), values(num, 4);
+  Eigen::MatrixXd terms(num, kNumTerms), values(num, MotionVector::RowsAtCompileTime);
   Eigen::MatrixXd within = Eigen::MatrixXd::Zero(kNumTerms, kNumTerms);
   for (Eigen::Index i = 0; i < num; ++i) {
     const PlacedMotion& known = motions[static_cast<std::size_t>(i)];

@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// Velocity, px/s, then acceleration, px/s^2.
-using MotionVector = Eigen::Matrix<double, 4, 1>;
+// Velocity, px/s, then acceleration, px/s^2, then jerk, px/s^3.
+using MotionVector = Eigen::Matrix<double, 6, 1>;
 
 struct PlacedMotion {
   Eigen::Vector2d x_in_image_px;
@@ -42,7 +42,7 @@ class MotionField {
   double unit_px_ = 1.0;  // of places, so that all terms are of about the same size
   Terms mean_terms_ = Terms::Zero();
   MotionVector mean_ = MotionVector::Zero();
-  Eigen::Matrix<double, kNumTerms, 4> coefficients_;
+  Eigen::Matrix<double, kNumTerms, MotionVector::RowsAtCompileTime> coefficients_;
 };
 
 }  // namespace velamap

@@ -29,6 +29,9 @@ Eigen::ArrayXd CovarianceRate(const Eigen::ArrayXd& times) {
 Eigen::ArrayXd CovarianceAcceleration(const Eigen::ArrayXd& times) {
   return times.abs().pow(5) / 240;
 }
+Eigen::ArrayXd CovarianceJerk(const Eigen::ArrayXd& times) {
+  return times.abs().pow(3) * times / 48;
+}
 
 // The inverse of the equations of universal kriging: the covariance of the places, bordered by the
 // polynomials.
@@ -79,17 +82,20 @@ DerivativeWeights WeighPlaces(const std::vector<double>& times_s, const TrackMod
   const Eigen::ArrayXd times = InUnits(times_s, model.unit_s);
   const Eigen::Index num_times = times.size();
   const Eigen::MatrixXd inverse = InvertEquations(times, model.noise_ratio);
-  Eigen::MatrixX2d derivatives = Eigen::MatrixX2d::Zero(inverse.rows(), 2);
+  Eigen::MatrixX3d derivatives = Eigen::MatrixX3d::Zero(inverse.rows(), 3);
   derivatives.col(0).head(num_times) = CovarianceRate(-times);
   derivatives.col(1).head(num_times) = CovarianceAcceleration(times);
+  derivatives.col(2).head(num_times) = CovarianceJerk(-times);
   derivatives(num_times + 1, 0) = 1;
   derivatives(num_times + 2, 1) = 2;
-  const Eigen::MatrixX2d solution = inverse * derivatives;
+  if (num_times >= kMaxNumPowers) derivatives(num_times + 3, 2) = 6;
+  const Eigen::MatrixX3d solution = inverse * derivatives;
   const double unit_s2 = model.unit_s * model.unit_s;
   DerivativeWeights weights;
   weights.values = solution.topRows(num_times);
   weights.values.col(0) /= model.unit_s;
   weights.values.col(1) /= unit_s2;
+  weights.values.col(2) /= unit_s2 * model.unit_s;
   if (num_times >= kMaxNumPowers) {
     const double variance = -solution.col(0).dot(derivatives.col(0));
     const double of_noise = model.noise_ratio * solution.col(0).head(num_times).squaredNorm();

@@ -1,4 +1,5 @@
-// Velocities and accelerations of points whose places are known at several times, with errors.
+// Derivatives with respect to time of the paths of points whose places are known at several times,
+// with errors.
 
 #pragma once
 
@@ -21,7 +22,8 @@ struct TrackModel {
 
 // The derivatives at time 0 are sums of the places weighted by the columns.
 struct DerivativeWeights {
-  Eigen::MatrixX2d values;  // for the velocity, 1/s, and the acceleration, 1/s^2
+  // For the velocity, 1/s, the acceleration, 1/s^2, and the jerk, 1/s^3.
+  Eigen::MatrixX3d values;
   // Variance of the velocity due to the errors of the places, and that due to what the point may
   // have done between and after them; (px/s)^2.
   double noise_variance = 0.0;

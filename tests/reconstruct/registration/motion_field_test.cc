@@ -54,10 +54,11 @@ TEST_F(MotionFieldTest, IsExactWhileTheCameraTurns) {
 
 // Whatever the markers, also those that determine no quadratic terms.
 TEST_F(MotionFieldTest, AffineMotionsAreExactWhereMarkersSpread) {
-  Eigen::Matrix<double, 4, 2> gradient;
-  gradient << 0.3, -0.2, 0.1, 0.4, 2, -3, 1, 5;
+  Eigen::Matrix<double, 6, 2> gradient;
+  gradient << 0.3, -0.2, 0.1, 0.4, 2, -3, 1, 5, 20, -30, 10, 50;
+  const MotionVector at_origin = (MotionVector() << 120, -80, 10, 30, 100, -300).finished();
   const auto motion_at = [&](const Eigen::Vector2d& p) -> MotionVector {
-    return MotionVector(120, -80, 10, 30) + gradient * p;
+    return at_origin + gradient * p;
   };
   for (int num = 3; num < 12; ++num) {
     std::vector<PlacedMotion> motions;
@@ -84,8 +85,9 @@ TEST_F(MotionFieldTest, NoiseIsNotExtrapolatedToCorners) {
       const Eigen::Vector2d spread(Uniform(10, 600), Uniform(10, 600));
       std::vector<PlacedMotion> motions;
       for (int i = 0; i < num; ++i) {
-        motions.push_back({{Uniform(-1, 1) * spread.x(), Uniform(-1, 1) * spread.y()},
-                           MotionVector(normal(random_), normal(random_), 0, 0)});
+        MotionVector motion = MotionVector::Zero();
+        motion.head<2>() = Eigen::Vector2d(normal(random_), normal(random_));
+        motions.push_back({{Uniform(-1, 1) * spread.x(), Uniform(-1, 1) * spread.y()}, motion});
       }
       const MotionField field(motions, kSide_px);
       for (const PlacedMotion& known : motions) {

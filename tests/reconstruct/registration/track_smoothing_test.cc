@@ -79,10 +79,11 @@ TEST(TrackSmoothing, DifferentiatesPolynomialsExactly) {
     const Eigen::ArrayXd times = Eigen::Map<const Eigen::ArrayXd>(times_s.data(), num_times);
     Eigen::ArrayXd places_px = 5 + 70 * times - 40 * times.square();
     if (num_times > 3) places_px += 300 * times.cube();
-    const Eigen::Vector2d derivatives =
+    const Eigen::Vector3d derivatives =
         WeighPlaces(times_s, model).values.transpose() * places_px.matrix();
     EXPECT_NEAR(derivatives[0], 70, 1e-8);
     EXPECT_NEAR(derivatives[1], -80, 1e-6);
+    EXPECT_NEAR(derivatives[2], num_times > 3 ? 1800 : 0, 1e-4);
   }
 }
 
