@@ -26,7 +26,7 @@ Descriptor EncodeDescriptor(const CornerId& id);
 FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetections& image2);
 
 // Up to this number of images, all pairs are matched.
-constexpr int kMaxNumExhaustive = 50;
+constexpr int kMaxNumExhaustive = 200;
 
 // Returns the pairs of images whose matches are written (first < second, indices into `images`,
 // which are ordered by name). Up to kMaxNumExhaustive images these are all pairs that share a
