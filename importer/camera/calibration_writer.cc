@@ -37,6 +37,11 @@ double FocalSigma_percent(const EstimatedCamera& found) {
   return 100 * found.sigmas.front() / found.camera.params.front();
 }
 
+bool ServesOtherClips(const EstimatedCamera& found) {
+  return FocalSigma_percent(found) <= kGoodFocalSigma_percent &&
+         HasMonotonicDistortion(found.camera);
+}
+
 bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index) {
   return estimate.camera.params[index] == 0.0 && estimate.sigmas[index] == 0.0;
 }
@@ -92,6 +97,7 @@ std::string DescribeCamera(const EstimatedCamera& estimate, std::string_view sig
                         text_of(i, 4));
     separator = ",";
   }
+  if (!HasMonotonicDistortion(camera)) text += " (folds over where no corner was seen)";
   return text;
 }
 

@@ -17,9 +17,13 @@ struct EstimatedCamera {
   std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
 };
 
-// 1 sigma of the focal length, in percent of it. A camera estimated from one clip is good enough
-// for others up to kGoodFocalSigma_percent.
+// 1 sigma of the focal length, in percent of it.
 double FocalSigma_percent(const EstimatedCamera& found);
+
+// Whether a camera estimated from one clip is good enough for others: the focal length is known to
+// kGoodFocalSigma_percent, and the distortion does not fold over inside the picture, which it may
+// do where the clip shows no marker without harm to the shape.
+bool ServesOtherClips(const EstimatedCamera& found);
 inline constexpr double kGoodFocalSigma_percent = 1.0;
 
 // Whether the parameter was held at zero and not estimated, such as k4 to k6 of FULL_OPENCV.

@@ -54,13 +54,6 @@ void WidenToOpenCV(const MarkerSolution& solution, std::map<CameraId, EstimatedC
   }
 }
 
-void WarnOfFoldedCameras(MarkerSolution* solution) {
-  if (!HasFoldedCamera(*solution)) return;
-  solution->warnings.push_back(
-      "the distortion that was found folds over inside the picture, where no marker was seen: do "
-      "not use the camera file for other clips; move the markers through the whole picture");
-}
-
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
                       const std::string& weakness) {
   constexpr double kMaxSigma = 0.05;  // relative

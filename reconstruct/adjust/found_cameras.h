@@ -22,8 +22,6 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
 // sigma, because it hardly depends on either.
 void WidenToOpenCV(const MarkerSolution& solution, std::map<CameraId, EstimatedCamera>* cameras);
 
-void WarnOfFoldedCameras(MarkerSolution* solution);
-
 // Throws DataError if the images do not determine a focal length (sigma above 5 %). `weakness` is
 // the warning of FindWeakGeometry().
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,

@@ -275,7 +275,6 @@ void MarkerAdjuster::Finish() {
     for (auto& [camera_id, found] : summary_.cameras) {
       AddInset(solution_.weights.inset_as_scale, found.camera, &found.sigmas);
     }
-    WarnOfFoldedCameras(&solution_);
   }
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
                   &solution_.model);

@@ -165,8 +165,7 @@ MetricTable LeftOutTable(const std::string& table, const std::string& key, const
 
 std::string FoundCameraText(const EstimatedCamera& camera, const Verdict& verdict,
                             const std::string& path) {
-  const bool is_good =
-      verdict.level != ReportStatus::kBad && FocalSigma_percent(camera) <= kGoodFocalSigma_percent;
+  const bool is_good = verdict.level != ReportStatus::kBad && ServesOtherClips(camera);
   return fmt::format("{}; {} {}", DescribeCamera(camera), path,
                      is_good ? "serves the next clip" : "is not good enough for other clips");
 }
