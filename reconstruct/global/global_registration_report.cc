@@ -27,24 +27,24 @@ void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   }
 }
 
-void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
-  const auto& pose = global.solution.Pose(frame_idx);
-  if (!pose) {
-    if (frame->left_out.reason.empty()) {
-      ExplainWhyNotRegistered(
-          NumKnown(global.problem, global.solution, frame_idx),
-          static_cast<int>(global.problem.Frame(frame_idx).observation_idxs.size()),
-          global.options.min_num_inliers, frame);
-    }
-    const auto contradicting = global.num_contradicting_of_frame.find(frame_idx);
-    if (contradicting != global.num_contradicting_of_frame.end()) {
-      frame->num_contradicting = contradicting->second;
-    }
-    return;
+void ExplainMissingFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
+  if (frame->left_out.reason.empty()) {
+    ExplainWhyNotRegistered(
+        NumKnown(global.problem, global.solution, frame_idx),
+        static_cast<int>(global.problem.Frame(frame_idx).observation_idxs.size()),
+        global.options.min_num_inliers, frame);
   }
-  frame->cam_from_shape = *pose;
+  const auto contradicting = global.num_contradicting_of_frame.find(frame_idx);
+  if (contradicting != global.num_contradicting_of_frame.end()) {
+    frame->num_contradicting = contradicting->second;
+  }
+}
+
+// Sorts the markers that a registered frame shows into those that determine its pose and outliers.
+void AddFrameMarkers(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
+  const MapFrame& observed = global.problem.Frame(frame_idx);
   double sum = 0.0;
-  for (const int idx : global.problem.Frame(frame_idx).observation_idxs) {
+  for (const int idx : observed.observation_idxs) {
     const MapObservation& observation = global.problem.Observation(idx);
     const auto& places = global.solution.Places(observation.marker_idx);
     const int marker_id = global.problem.Marker(observation.marker_idx).marker_id;
@@ -61,15 +61,25 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
       continue;
     }
     frame->marker_ids.push_back(marker_id);
-    const double m_per_px = (*pose * places.front().translation).z() /
-                            MeanFocalLength(*global.problem.Frame(frame_idx).camera);
+    const double m_per_px = (*frame->cam_from_shape * places.front().translation).z() /
+                            MeanFocalLength(*observed.camera);
     const double error_px = ReprojectionError(global.problem, global.solution, observation);
     sum += std::pow(error_px * m_per_px, 2);
   }
-  CountContradictions(frame);
   if (!frame->marker_ids.empty()) {
     frame->rms_error_m = std::sqrt(sum / static_cast<double>(frame->marker_ids.size()));
   }
+}
+
+void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
+  const auto& pose = global.solution.Pose(frame_idx);
+  if (!pose) {
+    ExplainMissingFrame(global, frame_idx, frame);
+    return;
+  }
+  frame->cam_from_shape = *pose;
+  AddFrameMarkers(global, frame_idx, frame);
+  CountContradictions(frame);
 }
 
 void AddMarkers(const GlobalRegistration& global, Registration* registration) {

@@ -90,6 +90,43 @@ std::optional<Curvature> CurvatureOf(const Rigid3& world_from_facet,
   return curvature;
 }
 
+// The facets of the same part that are near facet `idx`, which is known.
+std::vector<Rigid3> NeighborsOf(std::size_t idx, const std::vector<std::optional<Rigid3>>& facets,
+                                const MarkerState& state) {
+  constexpr double kReachSides = 4.0;
+  const MarkerBlock& marker = state.markers[idx];
+  std::vector<Rigid3> neighbors;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    if (i == idx || !facets[i] || state.markers[i].part != marker.part) continue;
+    const double distance_m = (facets[i]->translation - facets[idx]->translation).norm();
+    if (distance_m < kReachSides * marker.length_m) neighbors.push_back(*facets[i]);
+  }
+  return neighbors;
+}
+
+MarkerChords ChordsOf(const Curvature& curvature, double side_m) {
+  constexpr double kMaxShortening = 0.1;
+  // Paper may stay flat on a surface that bends less, and the print tolerance is larger than the
+  // shortening of such a side, 0.04 %.
+  constexpr double kMinBend = 0.1;  // side by radius
+  MarkerChords chords;
+  for (std::size_t side = 0; side < kNumCorners; ++side) {
+    const Eigen::Vector2d along =
+        side % 2 == 0 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
+    const double squared_bend = curvature.SquaredBend(side_m * along, side_m);
+    if (squared_bend < kMinBend * kMinBend) continue;
+    chords.side_ratios[side] = 1 - std::min(kMaxShortening, squared_bend / 24);
+  }
+  if (!chords.IsFlat()) chords.diagonals_difference = curvature.DiagonalsDifference(side_m);
+  return chords;
+}
+
+double MeanShortening(const MarkerChords& chords) {
+  double sum = 0.0;
+  for (const double ratio : chords.side_ratios) sum += 1 - ratio;
+  return sum / kNumCorners;
+}
+
 }  // namespace
 
 std::optional<Rigid3> WorldFromMarker(const MarkerBlock& marker) {
@@ -102,51 +139,25 @@ std::optional<Rigid3> WorldFromMarker(const MarkerBlock& marker) {
 }
 
 ChordSummary SetChords(MarkerState* state) {
-  constexpr double kReachSides = 4.0;
-  constexpr double kMaxShortening = 0.1;
-  // Paper may stay flat on a surface that bends less, and the print tolerance is larger than the
-  // shortening of such a side, 0.04 %.
-  constexpr double kMinBend = 0.1;  // side by radius
   std::vector<std::optional<Rigid3>> facets;
   for (const MarkerBlock& marker : state->markers) facets.push_back(WorldFromMarker(marker));
   ChordSummary summary;
-  int num_markers = 0;
   for (std::size_t i = 0; i < state->markers.size(); ++i) {
     MarkerBlock& marker = state->markers[i];
     marker.chords = {};
-    ++num_markers;
     if (!facets[i] || marker.is_rigid) continue;
-    std::vector<Rigid3> neighbors;
-    for (std::size_t j = 0; j < facets.size(); ++j) {
-      if (j == i || !facets[j] || state->markers[j].part != marker.part) continue;
-      if ((facets[j]->translation - facets[i]->translation).norm() <
-          kReachSides * marker.length_m) {
-        neighbors.push_back(*facets[j]);
-      }
-    }
-    const auto curvature = CurvatureOf(*facets[i], neighbors);
+    const auto curvature = CurvatureOf(*facets[i], NeighborsOf(i, facets, *state));
     if (!curvature) continue;
-    double shortening = 0.0;
-    for (std::size_t side = 0; side < kNumCorners; ++side) {
-      const Eigen::Vector2d along =
-          side % 2 == 0 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
-      const double squared_bend = curvature->SquaredBend(marker.length_m * along, marker.length_m);
-      if (squared_bend < kMinBend * kMinBend) continue;
-      const double of_side = std::min(kMaxShortening, squared_bend / 24);
-      marker.chords.side_ratios[side] = 1 - of_side;
-      shortening += of_side / kNumCorners;
-    }
-    if (shortening > 0) {
-      marker.chords.diagonals_difference = curvature->DiagonalsDifference(marker.length_m);
-      summary.curvatures_1_m[marker.marker_id] = curvature->Matrix();
-    }
-    summary.mean_shortening += shortening;
+    marker.chords = ChordsOf(*curvature, marker.length_m);
+    if (marker.chords.IsFlat()) continue;
+    summary.curvatures_1_m[marker.marker_id] = curvature->Matrix();
+    const double shortening = MeanShortening(marker.chords);
+    summary.mean_shortening += shortening / static_cast<double>(state->markers.size());
     if (shortening > summary.largest_shortening) {
       summary.largest_shortening = shortening;
       summary.marker_id = marker.marker_id;
     }
   }
-  if (num_markers > 0) summary.mean_shortening /= num_markers;
   return summary;
 }
 
