@@ -126,13 +126,15 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
     worst = &found;
   }
   if (worst == nullptr) return std::nullopt;
+  const std::string reason = WhyNotForOtherClips(*worst);
   return KeyNumber{
       KeyNumberKind::kCamera,
       fmt::format("found; focal length {:.1f} \u00b1 {:.1f} px", worst->camera.params.front(),
                   worst->sigmas.front()),
       fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
-                  "length, whose error the sigmas of the shape include; {}",
-                  kGoodFocalSigma_percent, DescribeCamera(*worst, "\u00b1")),
+                  "length, whose error the sigmas of the shape include; {}{}{}",
+                  kGoodFocalSigma_percent, DescribeCamera(*worst, "\u00b1"),
+                  reason.empty() ? "" : "; not good enough for other clips: ", reason),
       LowIsGood(worst_percent, kGoodFocalSigma_percent, kBad_percent),
       "the pictures hardly determine the camera: show markers tilted, everywhere in the picture "
       "and from more sides, or give a calibration"};

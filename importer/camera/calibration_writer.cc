@@ -37,9 +37,15 @@ double FocalSigma_percent(const EstimatedCamera& found) {
   return 100 * found.sigmas.front() / found.camera.params.front();
 }
 
-bool ServesOtherClips(const EstimatedCamera& found) {
-  return FocalSigma_percent(found) <= kGoodFocalSigma_percent &&
-         HasMonotonicDistortion(found.camera);
+std::string WhyNotForOtherClips(const EstimatedCamera& found) {
+  if (!HasMonotonicDistortion(found.camera)) {
+    return "the distortion folds over inside the picture, where no marker was seen; move the "
+           "markers through the whole picture";
+  }
+  const double percent = FocalSigma_percent(found);
+  return percent <= kGoodFocalSigma_percent
+             ? ""
+             : fmt::format("the focal length is known to {:.1f} % only", percent);
 }
 
 bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index) {
@@ -97,7 +103,6 @@ std::string DescribeCamera(const EstimatedCamera& estimate, std::string_view sig
                         text_of(i, 4));
     separator = ",";
   }
-  if (!HasMonotonicDistortion(camera)) text += " (folds over where no corner was seen)";
   return text;
 }
 

@@ -17,14 +17,14 @@ struct EstimatedCamera {
   std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
 };
 
-// 1 sigma of the focal length, in percent of it.
+// 1 sigma of the focal length, in percent of it. A camera estimated from one clip is good enough
+// for others up to kGoodFocalSigma_percent.
 double FocalSigma_percent(const EstimatedCamera& found);
-
-// Whether a camera estimated from one clip is good enough for others: the focal length is known to
-// kGoodFocalSigma_percent, and the distortion does not fold over inside the picture, which it may
-// do where the clip shows no marker without harm to the shape.
-bool ServesOtherClips(const EstimatedCamera& found);
 inline constexpr double kGoodFocalSigma_percent = 1.0;
+
+// Why a camera estimated from one clip is not good enough for others; empty if it is. A distortion
+// that folds over where the clip shows no marker does no harm to the shape, but to other clips.
+std::string WhyNotForOtherClips(const EstimatedCamera& found);
 
 // Whether the parameter was held at zero and not estimated, such as k4 to k6 of FULL_OPENCV.
 bool IsHeldAtZero(const EstimatedCamera& estimate, std::size_t index);

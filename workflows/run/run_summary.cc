@@ -165,9 +165,11 @@ MetricTable LeftOutTable(const std::string& table, const std::string& key, const
 
 std::string FoundCameraText(const EstimatedCamera& camera, const Verdict& verdict,
                             const std::string& path) {
-  const bool is_good = verdict.level != ReportStatus::kBad && ServesOtherClips(camera);
-  return fmt::format("{}; {} {}", DescribeCamera(camera), path,
-                     is_good ? "serves the next clip" : "is not good enough for other clips");
+  const std::string reason = WhyNotForOtherClips(camera);
+  const bool is_good = verdict.level != ReportStatus::kBad && reason.empty();
+  return fmt::format("{}; {} {}{}{}", DescribeCamera(camera), path,
+                     is_good ? "serves the next clip" : "is not good enough for other clips",
+                     reason.empty() ? "" : ": ", reason);
 }
 
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
@@ -206,8 +208,9 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
   }
   MetricTable cameras{"cameras_found", true, {}};
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
-    cameras.rows.push_back(
-        {{"camera_id", static_cast<int>(camera_id)}, {"camera", DescribeCamera(camera)}});
+    cameras.rows.push_back({{"camera_id", static_cast<int>(camera_id)},
+                            {"camera", DescribeCamera(camera)},
+                            {"not_for_other_clips", WhyNotForOtherClips(camera)}});
   }
   const auto name_of_image = [](const ReportLeftOut& image) { return image.name; };
   report.tables = {
