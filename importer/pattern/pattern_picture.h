@@ -112,18 +112,18 @@ class PatternPicture {
 
   void At(Floats x, Floats y, PatternPixels* pixels) const {
     const Eigen::Matrix<float, P::kCount, 1> p = parameters_.cast<float>();
-    const Place flat = ToSquare(x, y);
+    const Place place = WithBentSlopes(ToSquare(x, y));
     const auto n = static_cast<float>(model_.num_cells);
-    const Floats u_by_x = n * flat.u_by_x, u_by_y = n * flat.u_by_y;  // cells/px
-    const Floats v_by_x = n * flat.v_by_x, v_by_y = n * flat.v_by_y;
+    const Floats u_by_x = n * place.u_by_x, u_by_y = n * place.u_by_y;  // cells/px
+    const Floats v_by_x = n * place.v_by_x, v_by_y = n * place.v_by_y;
     const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
     const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
     CellWeights u, v;
     const Floats blur_u = cells_u * p[P::kBlurU], blur_v = cells_v * p[P::kBlurV];
     const auto outline_shift = static_cast<float>(model_.outline_shift_blurs);
-    ComputeCellWeights(n * flat.u, blur_u, model_.num_cells,
+    ComputeCellWeights(n * place.u, blur_u, model_.num_cells,
                        {p[P::kMargin], p[P::kMargin + 1], outline_shift * blur_u}, &u);
-    ComputeCellWeights(n * flat.v, blur_v, model_.num_cells,
+    ComputeCellWeights(n * place.v, blur_v, model_.num_cells,
                        {p[P::kMargin + 2], p[P::kMargin + 3], outline_shift * blur_v}, &v);
     Floats inner{};
     BlendedSurroundings surroundings;
@@ -153,12 +153,13 @@ class PatternPicture {
       jacobian[index + 1] = -share * by_y;
     };
     // A moving corner shifts each place by its bilinear weight; this is accurate enough for a step.
-    set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
-    set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
-    set_place(P::kCorners + 4, flat.u * flat.v);
-    set_place(P::kCorners + 6, (1.0f - flat.u) * flat.v);
-    set_place(P::kBendU, Hump(flat.u));
-    set_place(P::kBendV, Hump(flat.v));
+    set_place(P::kCorners, (1.0f - place.u) * (1.0f - place.v));
+    set_place(P::kCorners + 2, place.u * (1.0f - place.v));
+    set_place(P::kCorners + 4, place.u * place.v);
+    set_place(P::kCorners + 6, (1.0f - place.u) * place.v);
+    set_place(P::kBendU, Hump(place.u));
+    set_place(P::kBendV, Hump(place.v));
+    AddStretch(place, blur_u, blur_v, contrast, pattern, &jacobian);
     jacobian[P::kBlurU] = contrast * cells_u * pattern.by_blur_u;
     jacobian[P::kBlurV] = contrast * cells_v * pattern.by_blur_v;
     jacobian[P::kDark] = light * (1.0f - pattern.value);
@@ -181,7 +182,7 @@ class PatternPicture {
   // How far outside the black square pixels are used.
   static constexpr double kMarginInCells = 0.75;
 
-  // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
+  // A place in the unit square and the derivatives of u and v by those in the image, 1/px.
   struct Place {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
@@ -203,6 +204,22 @@ class PatternPicture {
         spread_v * spread_v * squared_v * by_vv;
     pattern->value += 0.5f * bend / squared_slope -
                       (spread_u * squared_u + spread_v * squared_v) / Sqrt(squared_slope);
+  }
+
+  // A bend also changes how many cells the blur reaches, and makes the view oblique. Adds this to
+  // the derivatives by the bends. `blur_u`, `blur_v`: in cells.
+  void AddStretch(const Place& place, Floats blur_u, Floats blur_v, Floats contrast,
+                  const Blended& pattern, FloatsArray<PatternParameters::kCount>* jacobian) const {
+    const auto v_by_u = static_cast<float>(parameters_[P::kBlurV] / parameters_[P::kBlurU]);
+    const Floats slope_u = contrast * (8.0f * place.u - 4.0f) * blur_u;
+    const Floats slope_v = contrast * (8.0f * place.v - 4.0f) * blur_v;
+    const Floats stretch_u = slope_u * pattern.by_blur_u, stretch_v = slope_v * pattern.by_blur_v;
+    const Floats shear_u = slope_u * blur_u * pattern.by_u_v * v_by_u;
+    const Floats shear_v = slope_v * blur_v * pattern.by_u_v / v_by_u;
+    (*jacobian)[P::kBendU] += stretch_u * place.u_by_x + shear_u * place.v_by_x;
+    (*jacobian)[P::kBendU + 1] += stretch_u * place.u_by_y + shear_u * place.v_by_y;
+    (*jacobian)[P::kBendV] += stretch_v * place.v_by_x + shear_v * place.u_by_x;
+    (*jacobian)[P::kBendV + 1] += stretch_v * place.v_by_y + shear_v * place.u_by_y;
   }
 
   // The light that the halo adds to the pixels nearest to the places.
@@ -275,6 +292,35 @@ class PatternPicture {
       place.v = flat_v - place.v_by_x * bend_x - place.v_by_y * bend_y;
     }
     return place;
+  }
+
+  // A bend compresses one end of a side and stretches the other, and with them the cells that the
+  // blur reaches. `flat` has the slopes of the flat marker.
+  Place WithBentSlopes(const Place& flat) const {
+    const Eigen::Matrix<float, 2, 6>& b = bends_px_;
+    const Floats hump_u = Hump(flat.u), hump_v = Hump(flat.v);
+    const Floats tilt_u = 2.0f * flat.u - 1.0f, tilt_v = 2.0f * flat.v - 1.0f;
+    const auto by_u = [&](int axis) {
+      return 2.0f * (hump_u * b(axis, 2) + hump_v * b(axis, 4)) -
+             4.0f * tilt_u * (b(axis, 0) + tilt_v * b(axis, 1) + tilt_u * b(axis, 2));
+    };
+    const auto by_v = [&](int axis) {
+      return 2.0f * (hump_u * b(axis, 1) + hump_v * b(axis, 5)) -
+             4.0f * tilt_v * (b(axis, 3) + tilt_u * b(axis, 4) + tilt_v * b(axis, 5));
+    };
+    const Floats x_by_u = by_u(0), y_by_u = by_u(1), x_by_v = by_v(0), y_by_v = by_v(1);
+    // The place on the flat marker by that on the bent one, and its inverse.
+    const Floats uu = 1.0f + flat.u_by_x * x_by_u + flat.u_by_y * y_by_u;
+    const Floats uv = flat.u_by_x * x_by_v + flat.u_by_y * y_by_v;
+    const Floats vu = flat.v_by_x * x_by_u + flat.v_by_y * y_by_u;
+    const Floats vv = 1.0f + flat.v_by_x * x_by_v + flat.v_by_y * y_by_v;
+    const Floats by_determinant = 1.0f / (uu * vv - uv * vu);
+    return {flat.u,
+            flat.v,
+            by_determinant * (vv * flat.u_by_x - uv * flat.v_by_x),
+            by_determinant * (vv * flat.u_by_y - uv * flat.v_by_y),
+            by_determinant * (uu * flat.v_by_x - vu * flat.u_by_x),
+            by_determinant * (uu * flat.v_by_y - vu * flat.u_by_y)};
   }
 
   Blended BlendAll(const CellWeights& u, const CellWeights& v, Floats correlation_px,
