@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -138,6 +139,19 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
   return marker;
 }
 
+// A photograph has neither frame number nor time.
+void ReadTime(const TablePlace& place, SQLite::Statement* row, FrameDetections* frame) {
+  constexpr double kMaxTime_s = 1e9;
+  constexpr double kMaxFrameNumber = std::numeric_limits<int>::max();
+  if (!row->isColumnNull("frame_number")) {
+    frame->frame_number =
+        static_cast<int>(CheckedNumber(place, "frame_number", FromTo(0, kMaxFrameNumber), row));
+  }
+  if (!row->isColumnNull("time_s")) {
+    frame->time_s = CheckedNumber(place, "time_s", FromTo(-kMaxTime_s, kMaxTime_s), row);
+  }
+}
+
 }  // namespace
 
 void CreateMarkerDetectionsTable(SQLite::Database* database) {
@@ -200,8 +214,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
             "velamap does not know; import the pictures again",
             path, image.detections.image_name, image.camera_id));
       }
-      if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();
-      if (!query.isColumnNull(4)) image.detections.time_s = query.getColumn(4).getDouble();
+      ReadTime({path, "marker_detections"}, &query, &image.detections);
       images.push_back(std::move(image));
     }
     if (query.isColumnNull(6)) continue;

@@ -119,6 +119,10 @@ std::vector<BadInput> NumbersOfDatabases() {
          RunSql(dir / "workspace/database.db",
                 "UPDATE marker_detections SET marker_id = marker_id + 10000");
        }},
+      {"ATimeOfADatabaseThatIsAText", registered, 2, "time_s is 'noon', not a number",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE marker_detections SET time_s = 'noon'");
+       }},
       {"ADatabaseWithoutTheCamerasOfItsImages", registered, 2, "names camera 1",
        [](const fs::path& dir) { RunSql(dir / "workspace/database.db", "DELETE FROM cameras"); }},
       {"AnUnknownCameraModelOfADatabase", registered, 2, "does not know",
