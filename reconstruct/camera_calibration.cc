@@ -84,6 +84,19 @@ std::vector<DatabaseImage> Upright(std::vector<DatabaseImage> images,
   return images;
 }
 
+void ChooseCalibrationViews(const std::vector<DatabaseImage>& upright, const Camera& guess,
+                            double corner_sigma_px, int max_num_views,
+                            CameraCalibration* calibration) {
+  constexpr double kRepeated = 5e-4;  // of the larger side
+  const std::vector<BoardView> views = WithoutRepeatedViews(
+      DescribeBoardViews(upright, corner_sigma_px), kRepeated * LargerSide(guess));
+  calibration->num_images = static_cast<int>(views.size());
+  const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
+  for (const std::size_t idx : ChooseBoardViews(views, grid, max_num_views)) {
+    calibration->views.push_back({views[idx]});
+  }
+}
+
 std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images,
                                         const std::vector<CalibrationView>& views) {
   std::set<ImageId> image_ids;
@@ -170,6 +183,18 @@ void CollectResiduals(const Model& model, CameraCalibration* calibration) {
   }
 }
 
+void TakeResult(CalibrationAdjustment adjusted, CameraCalibration* calibration) {
+  const AdjustmentUncertainty& uncertainty = adjusted.summary.uncertainty;
+  calibration->camera = adjusted.summary.cameras.begin()->second;
+  calibration->scores = std::move(adjusted.scores);
+  calibration->num_outliers = static_cast<int>(adjusted.summary.removed.size());
+  calibration->error_px = adjusted.summary.error_after_px;
+  calibration->rolling_shutter_s = uncertainty.rolling_shutter_s;
+  calibration->rolling_shutter_sigma_s = uncertainty.rolling_shutter_sigma_s;
+  calibration->board = FindBoardFlaws(adjusted.model, uncertainty.points);
+  CollectResiduals(adjusted.model, calibration);
+}
+
 }  // namespace
 
 const CameraModelScore& CameraCalibration::Score() const {
@@ -200,16 +225,9 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   const Camera& guess = guesses.begin()->second;
   CheckMovement(images, guess);
   const MarkerAdjustmentOptions adjustment = BoardOptions(options.num_threads);
-  constexpr double kRepeated = 5e-4;  // of the larger side
-  const std::vector<BoardView> views =
-      WithoutRepeatedViews(DescribeBoardViews(Upright(images, guesses), adjustment.corner_sigma_px),
-                           kRepeated * LargerSide(guess));
-  const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
   CameraCalibration calibration;
-  calibration.num_images = static_cast<int>(views.size());
-  for (const std::size_t idx : ChooseBoardViews(views, grid, options.max_num_views)) {
-    calibration.views.push_back({views[idx]});
-  }
+  ChooseCalibrationViews(Upright(images, guesses), guess, adjustment.corner_sigma_px,
+                         options.max_num_views, &calibration);
   std::vector<DatabaseImage> used = ChosenImages(images, calibration.views);
   LogInfo("{} of {} pictures that show the board are chosen", used.size(), images.size());
   // Takes all images and not only the selected ones, because the velocity of a corner follows from
@@ -228,15 +246,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   calibration.warnings = std::move(adjusted.summary.warnings);
   CheckSteadiness(adjustment, layout, corner_errors, seed, adjusted.model, &calibration.warnings);
   CheckLeftOut(adjustment, Upright(used, guesses), guess, adjusted.model);
-  calibration.camera = adjusted.summary.cameras.begin()->second;
-  calibration.scores = std::move(adjusted.scores);
-  calibration.num_outliers = static_cast<int>(adjusted.summary.removed.size());
-  calibration.error_px = adjusted.summary.error_after_px;
-  const AdjustmentUncertainty& uncertainty = adjusted.summary.uncertainty;
-  calibration.rolling_shutter_s = uncertainty.rolling_shutter_s;
-  calibration.rolling_shutter_sigma_s = uncertainty.rolling_shutter_sigma_s;
-  calibration.board = FindBoardFlaws(adjusted.model, uncertainty.points);
-  CollectResiduals(adjusted.model, &calibration);
+  TakeResult(std::move(adjusted), &calibration);
   return calibration;
 }
 

@@ -66,11 +66,10 @@ struct Lens {
   double cost = 0.0;  // sum of FocalEvidence::cost
 };
 
-// A camera whose markers hardly constrain its focal length gets the weighted mean of all cameras,
-// as a fraction of the larger side.
-Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const Cameras& guesses,
-            const RegistrationOptions& registration, const MarkerAdjustmentOptions& adjustment) {
-  const std::map<CameraId, CameraId> upright = UprightCameras(guesses);
+// The views of each upright camera, with those of turned images turned back.
+std::map<CameraId, std::vector<SquareView>> UprightViews(
+    const std::vector<DatabaseImage>& images, const Cameras& guesses,
+    const std::map<CameraId, CameraId>& upright, const MarkerAdjustmentOptions& adjustment) {
   std::map<CameraId, std::vector<SquareView>> views;
   for (const auto& [camera_id, guess] : guesses) {
     std::vector<DatabaseImage> of_camera;
@@ -86,10 +85,18 @@ Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const C
       views[upright.at(camera_id)].push_back(view);
     }
   }
+  return views;
+}
+
+// A camera whose markers hardly constrain its focal length gets the weighted mean of all cameras,
+// as a fraction of the larger side.
+Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const Cameras& guesses,
+            const RegistrationOptions& registration, const MarkerAdjustmentOptions& adjustment) {
+  const std::map<CameraId, CameraId> upright = UprightCameras(guesses);
   Lens lens;
   double information = 0.0, sum = 0.0;
   std::map<CameraId, double> log_sigmas;
-  for (const auto& [camera_id, of_camera] : views) {
+  for (const auto& [camera_id, of_camera] : UprightViews(images, guesses, upright, adjustment)) {
     const Camera& guess = guesses.at(camera_id);
     const FocalEvidence evidence = FindFocalLength(model, guess.width_px, guess.height_px,
                                                    of_camera, registration.num_threads);

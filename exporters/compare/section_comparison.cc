@@ -123,8 +123,9 @@ std::set<int> MarkersBeyondCommonEnds(const MarkerShape& shape, const MarkerShap
   return beyond;
 }
 
-SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
-                          bool is_exact, const Alignment& alignment, const Layout& layout,
+// Cuts both shapes along the lines of the reference's frame, between the same markers.
+SectionComparison CutBoth(const UncertainShape& shape, const UncertainShape& reference,
+                          const Alignment& alignment, const Layout& layout,
                           const std::string& wanted_part) {
   const PointCovariance* covariance =
       reference.covariance.IsEmpty() ? nullptr : &reference.covariance;
@@ -149,33 +150,38 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
       CutInFrame(frame.frame_from_shape, frame, reference, offsets_m, beyond, layout, wanted_part);
   comparison.of_shape =
       CutInFrame(frame_from_shape, frame, shape, offsets_m, beyond, layout, wanted_part);
+  return comparison;
+}
+
+// Adds the differences of the sections that both shapes have, and notes on the others.
+void CompareCuts(bool is_exact, SectionComparison* comparison) {
+  std::vector<std::string>& notes = comparison->notes;
   std::set<std::string> parts_without_twist;
-  for (const Section& section : comparison.of_shape.sections) {
-    const Section* other = FindSection(comparison.of_reference, section.part, section.name);
+  for (const Section& section : comparison->of_shape.sections) {
+    const Section* other = FindSection(comparison->of_reference, section.part, section.name);
     if (other == nullptr) continue;
     if (!HaveSameEnds(section, *other)) {
-      comparison.notes.push_back(fmt::format(
+      notes.push_back(fmt::format(
           "{} {}: not compared: too few of its markers are whole in both, and the chords differ",
           section.part, section.name));
       continue;
     }
     const std::string missing = MissingEndsText(section);
     if (!missing.empty()) {
-      comparison.notes.push_back(fmt::format("{} {}: compared over the markers of both, {}",
-                                             section.part, section.name, missing));
+      notes.push_back(fmt::format("{} {}: compared over the markers of both, {}", section.part,
+                                  section.name, missing));
     }
-    const bool with_twist = TwistReference(comparison.of_shape, section.part) ==
-                            TwistReference(comparison.of_reference, section.part);
+    const bool with_twist = TwistReference(comparison->of_shape, section.part) ==
+                            TwistReference(comparison->of_reference, section.part);
     if (!with_twist) parts_without_twist.insert(section.part);
-    AddDifferences(section, *other, with_twist, is_exact, &comparison.differences);
+    AddDifferences(section, *other, with_twist, is_exact, &comparison->differences);
   }
-  AddNotes(comparison.of_shape, "shape", &comparison.notes);
-  AddNotes(comparison.of_reference, "reference", &comparison.notes);
+  AddNotes(comparison->of_shape, "shape", &notes);
+  AddNotes(comparison->of_reference, "reference", &notes);
   for (const std::string& part : parts_without_twist) {
-    comparison.notes.push_back(
+    notes.push_back(
         fmt::format("twists of {} cannot be compared: they have different references", part));
   }
-  return comparison;
 }
 
 }  // namespace
@@ -206,7 +212,9 @@ MarkerShape MarkersOnSurface(const ShapeDeviation& deviation) {
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
                                   const Alignment& alignment, const Layout& layout,
                                   const std::string& part) {
-  return Compare(shape, reference, false, alignment, layout, part);
+  SectionComparison comparison = CutBoth(shape, reference, alignment, layout, part);
+  CompareCuts(false, &comparison);
+  return comparison;
 }
 
 SectionComparison CompareSectionsOfDesign(const UncertainShape& shape,
@@ -214,8 +222,10 @@ SectionComparison CompareSectionsOfDesign(const UncertainShape& shape,
                                           const std::string& part) {
   const MarkerShape on_surface = MarkersOnSurface(deviation);
   const bool is_exact = !(deviation.surface_sigma_m > 0);
-  return Compare(shape, {on_surface, CovarianceFromSigmas(on_surface)}, is_exact,
-                 deviation.alignment, layout, part);
+  SectionComparison comparison = CutBoth(shape, {on_surface, CovarianceFromSigmas(on_surface)},
+                                         deviation.alignment, layout, part);
+  CompareCuts(is_exact, &comparison);
+  return comparison;
 }
 
 }  // namespace velamap

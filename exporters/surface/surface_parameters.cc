@@ -15,6 +15,9 @@ namespace {
 
 constexpr int kMaxSpans = 20;  // in each direction; no sail has more markers on a line
 
+constexpr char kLengthOfLines[] = "the length of the lines";
+constexpr char kSpanOfLines[] = "the distance from the lowest to the highest line";
+
 Eigen::ArrayXd ClampedKnots(int degree, const std::vector<double>& interior) {
   const Eigen::Index n = static_cast<Eigen::Index>(interior.size());
   Eigen::ArrayXd knots = Eigen::ArrayXd::Zero(n + 2 * (degree + 1));
@@ -111,6 +114,63 @@ void AddPointsOf(const SurfaceEdge& given, std::size_t ObservedRow::*end_idx, Ob
   edge->num_points = parameters->observations.size() - edge->first_idx;
 }
 
+// Returns v of each row, by the mean distances between the rows. Sets the lengths across them.
+std::vector<double> PlaceRows(const std::vector<SurfaceRow>& rows, const SurfaceOptions& options,
+                              SurfaceParameters* parameters) {
+  const SurfaceEdges& edges = options.edges;
+  parameters->below_m = edges.foot.beyond_m + kMPerMm * options.foot_extension_mm.value_or(0.0);
+  parameters->above_m = edges.head.beyond_m + kMPerMm * options.head_extension_mm.value_or(0.0);
+  std::vector<double> heights_m = {parameters->below_m};
+  for (std::size_t j = 1; j < rows.size(); ++j) {
+    heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
+  }
+  const double span_m = heights_m.back() - heights_m.front();
+  CheckExtension(options, &SurfaceOptions::foot_extension_mm, span_m, kSpanOfLines);
+  CheckExtension(options, &SurfaceOptions::head_extension_mm, span_m, kSpanOfLines);
+  parameters->length_v_m = heights_m.back() + parameters->above_m;
+  for (double& height_m : heights_m) height_m /= parameters->length_v_m;
+  return heights_m;
+}
+
+void AddRows(const std::vector<SurfaceRow>& rows, const std::vector<double>& vs,
+             const SurfaceEdges& edges, SurfaceParameters* parameters) {
+  std::vector<SurfaceObservation>& observations = parameters->observations;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const SurfaceRow& row = rows[j];
+    const std::size_t first = observations.size();
+    parameters->rows.push_back(
+        {first, first + row.points.size() - 1, row.before_m, row.after_m, row.is_edge});
+    for (std::size_t k = 0; k < row.points.size(); ++k) {
+      const bool is_marker = row.marker_ids[k] >= 0;
+      observations.push_back({row.marker_ids[k],
+                              is_marker ? row.name : "",
+                              row.us[k],
+                              vs[j],
+                              {{row.points[k], row.us[k], vs[j]}},
+                              !is_marker && IsSeen(edges, rows, j, k)});
+    }
+    parameters->mean_length_u_m += row.length_m / rows.size();
+  }
+}
+
+void ChooseKnots(const std::vector<SurfaceRow>& rows, const std::vector<double>& vs,
+                 bool shows_between, SurfaceParameters* parameters) {
+  std::vector<double> us;
+  std::size_t max_points = 0;
+  for (const SurfaceRow& row : rows) {
+    us.insert(us.end(), row.us.begin(), row.us.end());
+    max_points = std::max(max_points, row.points.size());
+  }
+  const int num_spans_u = std::clamp(static_cast<int>(max_points) - 1, 1, kMaxSpans);
+  const int num_gaps = static_cast<int>(rows.size()) - 1;
+  const int num_spans_v = std::min(shows_between ? 2 * num_gaps : num_gaps, kMaxSpans);
+  parameters->degree_v = std::min(num_gaps, 3);
+  parameters->knots_u = ClampedKnots(parameters->degree_u, QuantileKnots(us, num_spans_u));
+  std::vector<double> interior_v;
+  if (parameters->degree_v == 3) interior_v = QuantileKnots(vs, num_spans_v);
+  parameters->knots_v = ClampedKnots(parameters->degree_v, interior_v);
+}
+
 }  // namespace
 
 Eigen::Vector3d SurfaceObservation::Center() const {
@@ -123,57 +183,13 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
                                    const SurfaceOptions& options) {
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
-  const double length_m = MeanLength(lines);
-  for (const auto extension_mm :
-       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm}) {
-    CheckExtension(options, extension_mm, length_m, "the length of the lines");
-  }
+  CheckExtension(options, &SurfaceOptions::luff_extension_mm, MeanLength(lines), kLengthOfLines);
+  CheckExtension(options, &SurfaceOptions::leech_extension_mm, MeanLength(lines), kLengthOfLines);
   const std::vector<SurfaceRow> rows = MakeSurfaceRows(lines, options, &parameters.notes);
-  const SurfaceEdges& edges = options.edges;
-  parameters.below_m = edges.foot.beyond_m + kMPerMm * options.foot_extension_mm.value_or(0.0);
-  parameters.above_m = edges.head.beyond_m + kMPerMm * options.head_extension_mm.value_or(0.0);
-  std::vector<double> heights_m = {parameters.below_m};
-  for (std::size_t j = 1; j < rows.size(); ++j) {
-    heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
-  }
-  const double span_m = heights_m.back() - heights_m.front();
-  for (const auto extension_mm :
-       {&SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
-    CheckExtension(options, extension_mm, span_m,
-                   "the distance from the lowest to the highest line");
-  }
-  parameters.length_v_m = heights_m.back() + parameters.above_m;
-
+  const std::vector<double> vs = PlaceRows(rows, options, &parameters);
   SetKnownSides(lines, options, &parameters);
-  std::vector<double> all_us, line_vs;
-  std::size_t max_points = 0;
-  for (std::size_t j = 0; j < rows.size(); ++j) {
-    const double v = heights_m[j] / parameters.length_v_m;
-    const std::size_t first = parameters.observations.size();
-    parameters.rows.push_back({first, first + rows[j].points.size() - 1, rows[j].before_m,
-                               rows[j].after_m, rows[j].is_edge});
-    for (std::size_t k = 0; k < rows[j].points.size(); ++k) {
-      const bool is_marker = rows[j].marker_ids[k] >= 0;
-      parameters.observations.push_back({rows[j].marker_ids[k],
-                                         is_marker ? rows[j].name : "",
-                                         rows[j].us[k],
-                                         v,
-                                         {{rows[j].points[k], rows[j].us[k], v}},
-                                         !is_marker && IsSeen(edges, rows, j, k)});
-      all_us.push_back(rows[j].us[k]);
-    }
-    line_vs.push_back(v);
-    parameters.mean_length_u_m += rows[j].length_m / rows.size();
-    max_points = std::max(max_points, rows[j].points.size());
-  }
-  const int num_spans_u = std::clamp(static_cast<int>(max_points) - 1, 1, kMaxSpans);
-  const int num_gaps = static_cast<int>(rows.size()) - 1;
-  const int num_spans_v = std::min(shows_between ? 2 * num_gaps : num_gaps, kMaxSpans);
-  parameters.degree_v = std::min(num_gaps, 3);
-  parameters.knots_u = ClampedKnots(parameters.degree_u, QuantileKnots(all_us, num_spans_u));
-  std::vector<double> interior_v;
-  if (parameters.degree_v == 3) interior_v = QuantileKnots(line_vs, num_spans_v);
-  parameters.knots_v = ClampedKnots(parameters.degree_v, interior_v);
+  AddRows(rows, vs, options.edges, &parameters);
+  ChooseKnots(rows, vs, shows_between, &parameters);
   return parameters;
 }
 

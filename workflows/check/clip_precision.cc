@@ -41,6 +41,38 @@ double Parallax_deg(const std::map<std::string, Eigen::Vector3d>& directions) {
   return kDegPerRad * LargestAngle(all);
 }
 
+ClipPrecision PrecisionOf(const Model& model, const MarkerAdjustmentSummary& summary) {
+  ClipPrecision precision;
+  precision.num_images = static_cast<int>(model.images.size());
+  const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.uncertainty.points);
+  if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
+  precision.num_markers = static_cast<int>(sigmas_mm.size());
+  precision.marker_sigma_mm = MedianSigma(sigmas_mm);
+  precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
+  precision.directions = DirectionsToCameras(model);
+  precision.parallax_deg = Parallax_deg(precision.directions);
+  precision.steadiness = JudgeSteadiness(model);
+  precision.calibration = summary.uncertainty.calibration;
+  for (const auto& [camera_id, camera] : summary.cameras) precision.found_cameras.push_back(camera);
+  precision.warnings = summary.warnings;
+  return precision;
+}
+
+// Images and markers that contradict the others.
+void AddDoubts(const Registration& registration, ClipPrecision* precision) {
+  if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
+    precision->warnings.push_back(std::move(doubt));
+  }
+  for (const RegisteredFrame& frame : registration.frames) {
+    if (frame.num_contradicting > 0) precision->contradicting_images.insert(frame.image_name);
+  }
+  for (const DroppedMarker& marker : registration.dropped_markers) {
+    if (!marker.is_false) continue;
+    precision->markers_left_out.push_back(
+        fmt::format("marker {}: {}", marker.marker_id, marker.reason));
+  }
+}
+
 }  // namespace
 
 double LargestAngle(const std::vector<Eigen::Vector3d>& directions) {
@@ -74,32 +106,10 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   Model model = seed;
   const MarkerAdjustmentSummary summary =
       AdjustWithMarkers(adjustment_options, layout, corner_errors, &model);
-  ClipPrecision precision;
-  precision.num_images = static_cast<int>(model.images.size());
-  const std::map<int, double> sigmas_mm = CenterSigmas_mm(summary.uncertainty.points);
-  if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
-  precision.num_markers = static_cast<int>(sigmas_mm.size());
-  precision.marker_sigma_mm = MedianSigma(sigmas_mm);
-  precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
-  precision.directions = DirectionsToCameras(model);
-  precision.parallax_deg = Parallax_deg(precision.directions);
-  precision.steadiness = JudgeSteadiness(model);
+  ClipPrecision precision = PrecisionOf(model, summary);
   precision.steadiness.step =
       ConfirmFocalStep(adjustment_options, layout, corner_errors, &seed, precision.steadiness.step);
-  precision.calibration = summary.uncertainty.calibration;
-  for (const auto& [camera_id, camera] : summary.cameras) precision.found_cameras.push_back(camera);
-  precision.warnings = summary.warnings;
-  if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
-    precision.warnings.push_back(std::move(doubt));
-  }
-  for (const RegisteredFrame& frame : registration.frames) {
-    if (frame.num_contradicting > 0) precision.contradicting_images.insert(frame.image_name);
-  }
-  for (const DroppedMarker& marker : registration.dropped_markers) {
-    if (!marker.is_false) continue;
-    precision.markers_left_out.push_back(
-        fmt::format("marker {}: {}", marker.marker_id, marker.reason));
-  }
+  AddDoubts(registration, &precision);
   return precision;
 }
 
