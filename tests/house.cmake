@@ -74,7 +74,8 @@ house_folder(reconstruct/problem PUBLIC
   marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions
   rolling_shutter scale_bar)
 house_folder(reconstruct/sizes PUBLIC
-  bend_evidence bent_corners marker_curvature marker_sizes scale_bar_verdict student_factor)
+  bend_evidence bent_corners marker_curvature marker_sizes moving_markers runaway_markers
+  scale_bar_verdict size_deviations student_factor)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment camera_cross_validation marker_adjustment)
 house_folder(reconstruct/calibration PUBLIC

@@ -46,9 +46,9 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
                             const CornerErrors& corner_errors, Model tied,
                             const TurnedCameras& turned) {
   AddSecondRadialTerm(&tied);
-  MarkerAdjuster begin(free, layout, corner_errors, std::move(tied));
-  begin.PrepareSeed();
-  MarkerAdjuster adjuster = MarkerAdjuster::AdjustedFrom(&begin);
+  MarkerAdjuster adjuster(free, layout, corner_errors, std::move(tied));
+  adjuster.PrepareSeed();
+  adjuster.AdjustFromSeed();
   adjuster.ChooseCameraModel();
   CameraAdjustment adjustment;
   for (const auto& [camera_id, estimate] : adjuster.EstimateCameras()) {
@@ -124,9 +124,9 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
   free.Check();
   CheckModel(model);
   TieTurnedCameras(&model);
-  MarkerAdjuster begin(free, layout, corner_errors, std::move(model));
-  begin.PrepareSeed();
-  MarkerAdjuster adjuster = MarkerAdjuster::AdjustedFrom(&begin);
+  MarkerAdjuster adjuster(free, layout, corner_errors, std::move(model));
+  adjuster.PrepareSeed();
+  adjuster.AdjustFromSeed();
   CalibrationAdjustment result;
   result.scores = adjuster.CrossValidateCameraModel(wanted);
   try {

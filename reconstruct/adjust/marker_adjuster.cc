@@ -15,14 +15,12 @@
 #include "importer/text/id_ranges.h"
 #include "reconstruct/adjust/bent_markers.h"
 #include "reconstruct/adjust/calibration_choice.h"
-#include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/adjust/found_cameras.h"
 #include "reconstruct/adjust/rolling_shutter_choice.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
-#include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
@@ -30,6 +28,7 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/sizes/marker_sizes.h"
+#include "reconstruct/sizes/runaway_markers.h"
 #include "reconstruct/sizes/scale_bar_verdict.h"
 
 namespace velamap {
@@ -43,29 +42,6 @@ std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
     sigmas[marker_id] = 2.0 * solution.options.inset_sigma_px / side_px;
   }
   return sigmas;
-}
-
-// Without the variance factor, the correlation factor and the share of large residuals.
-AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
-                                    const MarkerLinearization& linearization) {
-  AdjustmentUncertainty uncertainty =
-      MakeUncertainty(solution.options, linearization.state, solution.weights,
-                      linearization.problem, linearization.covariance);
-  uncertainty.markers_bend = !solution.chords.empty();
-  if (solution.weights.scale_bars.empty()) {
-    uncertainty.print_scale_sigma =
-        std::min(solution.options.common_print_tolerance, uncertainty.relative_scale_sigma);
-  }
-  if (solution.weights.frees_rolling_shutter) {
-    uncertainty.rolling_shutter_sigma_s =
-        ShutterSigma(uncertainty.rolling_shutter_sigma_s, solution, linearization);
-  }
-  uncertainty.calibration = TestCalibration(solution.model, linearization);
-  uncertainty.calibration.shape_change_in_sigmas =
-      uncertainty.calibration.shape_change_m /
-      std::sqrt(Trace(uncertainty.points) /
-                static_cast<double>(uncertainty.points.point3D_ids.size()));
-  return uncertainty;
 }
 
 }  // namespace
@@ -95,11 +71,22 @@ void MarkerAdjuster::PrepareSeed() {
   TransformModel(Sim3{MetresPerUnit(MakeMarkerState(solution_.model, *solution_.layout))},
                  &solution_.model);
   MoveToFirstCamera(&solution_.model);
+  const std::vector<int> runaway_ids = PlaceRunawayMarkersAnew(*solution_.layout, &solution_.model);
+  if (!runaway_ids.empty()) {
+    LogDebug("markers of an impossible size, placed anew: {}", IdRanges(runaway_ids));
+  }
   solution_.state = MakeMarkerState(solution_.model, *solution_.layout);
   if (!solution_.options.estimate_inset && solution_.options.inset_sigma_px > 0) {
     solution_.weights.inset_as_scale =
         2.0 * solution_.options.inset_sigma_px / MedianSidePx(solution_.model);
   }
+  seed_ = {solution_, summary_};
+}
+
+void MarkerAdjuster::RestoreSeed() {
+  solution_ = seed_.solution;
+  summary_ = seed_.summary;
+  part_disagreement_.clear();
 }
 
 void MarkerAdjuster::AdjustWithLooseSizes() {
@@ -122,7 +109,8 @@ void MarkerAdjuster::AdjustWithLooseSizes() {
 void MarkerAdjuster::RejectContradictingSizes() {
   const auto linearization = Linearize(solution_);
   const MarkerSizeVerdict verdict =
-      JudgeMarkerSizes(linearization->state, linearization->covariance, InsetSigmas(solution_),
+      JudgeMarkerSizes(linearization->state, linearization->covariance,
+                       SizeCorrelationFactor(solution_, *linearization), InsetSigmas(solution_),
                        solution_.options, PrintScaleSigma(solution_.options, solution_.weights));
   solution_.weights.print_tolerance = verdict.print_tolerance;
   solution_.weights.markers_without_size = verdict.contradicting;
@@ -167,18 +155,20 @@ void MarkerAdjuster::AllowForMotion() {
   }
 }
 
-std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjuster begin) const {
+void MarkerAdjuster::RefineCalibration() {
   const std::optional<RefinedIntrinsics> refined = ChooseIntrinsics(solution_);
-  if (!refined) return std::nullopt;
-  SetFreeIntrinsics(refined->free, refined->sigma, &begin.solution_);
+  if (!refined) return;
+  MarkerAdjuster better = *this;
+  better.RestoreSeed();
+  SetFreeIntrinsics(refined->free, refined->sigma, &better.solution_);
   try {
-    begin.AdjustToCorners();
+    better.AdjustToCorners();
   } catch (const DataError& error) {
     LogDebug("the calibration is not refined: {}", error.what());
-    return std::nullopt;
+    return;
   }
-  ReportRefinement(refined->free, solution_.options.intrinsics_sigma, &begin.solution_);
-  return begin;
+  ReportRefinement(refined->free, solution_.options.intrinsics_sigma, &better.solution_);
+  *this = std::move(better);
 }
 
 std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
@@ -211,14 +201,12 @@ void MarkerAdjuster::AdjustToCorners() {
   AdjustWithSizes();
 }
 
-MarkerAdjuster MarkerAdjuster::AdjustedFrom(MarkerAdjuster* begin) {
-  MarkerAdjuster adjuster = *begin;
-  adjuster.AdjustToCorners();
-  if (!ShowsRollingShutter(adjuster.solution_)) return adjuster;
-  begin->solution_.weights.frees_rolling_shutter = true;
-  adjuster = *begin;
-  adjuster.AdjustToCorners();
-  return adjuster;
+void MarkerAdjuster::AdjustFromSeed() {
+  AdjustToCorners();
+  if (!ShowsRollingShutter(solution_)) return;
+  seed_.solution.weights.frees_rolling_shutter = true;
+  RestoreSeed();
+  AdjustToCorners();
 }
 
 bool MarkerAdjuster::AddScaleBars() {
@@ -288,7 +276,13 @@ void MarkerAdjuster::Finish() {
 }
 
 std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
-  return CamerasOf(solution_.model, *Linearize(solution_));
+  const auto linearization = Linearize(solution_);
+  const double correlation_factor = ShapeCorrelationFactor(solution_, *linearization);
+  std::map<CameraId, EstimatedCamera> cameras = CamerasOf(solution_.model, *linearization);
+  for (auto& [camera_id, found] : cameras) {
+    for (double& sigma : found.sigmas) sigma *= correlation_factor;
+  }
+  return cameras;
 }
 
 Model MarkerAdjuster::WithRemovedCorners(std::vector<RemovedObservation>* lost) const {

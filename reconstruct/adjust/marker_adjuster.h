@@ -26,46 +26,32 @@ class MarkerAdjuster {
   // DataError if too little is left.
   void PrepareSeed();
 
-  // Minimizes with hardly any weight on the markers' sizes, so that the images decide, and
-  // calibrates the corners' sigmas by the residuals.
-  void AdjustWithLooseSizes();
+  // Adjusts the seed. If the result shows a rolling shutter, adjusts the seed again with the
+  // readout time as a parameter.
+  void AdjustFromSeed();
 
-  // Drops the size of markers that contradict the others, raises the print tolerance where the
-  // sizes scatter more than it explains, and lets each part have a scale of its own where parts
-  // disagree.
-  void RejectContradictingSizes();
+  // Adjusts the seed again, with those intrinsics free that the images determine better than the
+  // calibration does, if this explains the corners significantly better.
+  void RefineCalibration();
 
-  // Minimizes with the sizes. Removes corners beyond outlier_sigmas and restores those that have
-  // come to fit, until nothing changes.
-  void AdjustWithSizes();
-
-  // Counts markers less that move relative to the others (MotionFactors()), and adjusts with the
-  // sizes again. Call this after AdjustToCorners().
-  void AllowForMotion();
-
-  // The first three steps, with AdjustToBentMarkers() (bent_markers.h) after the first.
-  void AdjustToCorners();
-
-  // Returns a copy of `begin` after AdjustToCorners(). If it shows a rolling shutter, frees the
-  // readout time in `begin` and adjusts from there again.
-  static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
-
-  // With find_camera, after AdjustToCorners(): takes the model that explains the images best.
+  // With find_camera: takes the model that explains the images best.
   void ChooseCameraModel();
   // Chooses it by cross-validation instead (camera_cross_validation.h), or takes the `wanted` one.
   // Restores the corners that the most flexible model explains.
   std::vector<CameraModelScore> CrossValidateCameraModel(std::optional<CameraModel> wanted);
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
-  // Call this after AdjustToCorners(), with a `begin` that is a copy of this adjuster from before
-  // that call. Adjusts `begin` again, with those intrinsics free that the images determine better
-  // than the calibration does. Returns nothing unless the new intrinsics explain the corners
-  // significantly better.
-  std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
-
   // Adds the scale bars that agree with each other. If they contradict the markers, widens the
   // prior of the print's scale accordingly. Returns false if there are no such bars.
   bool AddScaleBars();
+
+  // Minimizes with the sizes. Removes corners beyond outlier_sigmas and restores those that have
+  // come to fit, until nothing changes.
+  void AdjustWithSizes();
+
+  // Counts markers less that move relative to the others (moving_markers.h), and adjusts with the
+  // sizes again.
+  void AllowForMotion();
 
   // Minimizes until steps are a small fraction of a sigma, then computes the correlation of errors,
   // the covariance, and the warnings and figures of the summary. Corrects the image points for the
@@ -78,6 +64,23 @@ class MarkerAdjuster {
   MarkerAdjustmentSummary TakeSummary();
 
  private:
+  // Where each adjustment begins.
+  struct Seed {
+    MarkerSolution solution;
+    MarkerAdjustmentSummary summary;
+  };
+
+  void RestoreSeed();
+  // The steps of an adjustment: loose sizes, bent markers (bent_markers.h), contradicting sizes,
+  // sizes.
+  void AdjustToCorners();
+  // Minimizes with hardly any weight on the markers' sizes, so that the images decide, and
+  // calibrates the corners' sigmas by the residuals.
+  void AdjustWithLooseSizes();
+  // Drops the size of markers that contradict the others, raises the print tolerance where the
+  // sizes scatter more than it explains, and lets each part have a scale of its own where parts
+  // disagree.
+  void RejectContradictingSizes();
   // Returns the model with the corners that were removed from it. `lost` gets those whose points or
   // images are gone.
   Model WithRemovedCorners(std::vector<RemovedObservation>* lost) const;
@@ -85,6 +88,7 @@ class MarkerAdjuster {
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
 
+  Seed seed_;
   MarkerSolution solution_;
   std::size_t num_images_before_;
   std::string part_disagreement_;  // beginning of a warning; empty if parts agree

@@ -1,6 +1,5 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 
-#include <optional>
 #include <utility>
 
 #include "reconstruct/adjust/marker_adjuster.h"
@@ -15,11 +14,10 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   CheckModel(*model);
   Model tied = *model;
   const TurnedCameras turned = TieTurnedCameras(&tied);
-  MarkerAdjuster begin(options, layout, corner_errors, std::move(tied));
-  begin.PrepareSeed();
-  MarkerAdjuster given = MarkerAdjuster::AdjustedFrom(&begin);
-  std::optional<MarkerAdjuster> better = given.WithBetterCalibration(begin);
-  MarkerAdjuster& adjuster = better ? *better : given;
+  MarkerAdjuster adjuster(options, layout, corner_errors, std::move(tied));
+  adjuster.PrepareSeed();
+  adjuster.AdjustFromSeed();
+  adjuster.RefineCalibration();
   if (adjuster.AddScaleBars()) adjuster.AdjustWithSizes();
   adjuster.AllowForMotion();
   adjuster.Finish();

@@ -8,11 +8,15 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
+#include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/problem/error_correlation.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/problem/scale_bar.h"
+#include "reconstruct/sizes/moving_markers.h"
+#include "reconstruct/sizes/size_deviations.h"
 #include "reconstruct/sizes/student_factor.h"
 
 namespace velamap {
@@ -145,6 +149,14 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
       GroupImages(solution.model, kNumCorrelationGroups), solution.options.num_threads);
 }
 
+double SizeCorrelationFactor(const MarkerSolution& solution,
+                             const MarkerLinearization& linearization) {
+  const auto& [state, problem, jacobian, covariance] = linearization;
+  return CorrelationFactorOf(SizesByPoints(state, covariance), state, problem, jacobian, covariance,
+                             GroupImages(solution.model, kNumCorrelationGroups),
+                             solution.options.num_threads);
+}
+
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization) {
   // Codecs predict a frame from others as if all its rows had moved alike. On rendered walls, H.264
@@ -164,6 +176,28 @@ double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
   const double by_bias_s =
       std::hypot(kOfTime, kOfTimeByNoise_1_px * noise_px) * state.rolling_shutter_s;
   return std::hypot(factor * independent_sigma_s, by_motion_s, by_bias_s);
+}
+
+AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
+                                    const MarkerLinearization& linearization) {
+  AdjustmentUncertainty uncertainty =
+      MakeUncertainty(solution.options, linearization.state, solution.weights,
+                      linearization.problem, linearization.covariance);
+  uncertainty.markers_bend = !solution.chords.empty();
+  if (solution.weights.scale_bars.empty()) {
+    uncertainty.print_scale_sigma =
+        std::min(solution.options.common_print_tolerance, uncertainty.relative_scale_sigma);
+  }
+  if (solution.weights.frees_rolling_shutter) {
+    uncertainty.rolling_shutter_sigma_s =
+        ShutterSigma(uncertainty.rolling_shutter_sigma_s, solution, linearization);
+  }
+  uncertainty.calibration = TestCalibration(solution.model, linearization);
+  uncertainty.calibration.shape_change_in_sigmas =
+      uncertainty.calibration.shape_change_m /
+      std::sqrt(Trace(uncertainty.points) /
+                static_cast<double>(uncertainty.points.point3D_ids.size()));
+  return uncertainty;
 }
 
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {

@@ -11,6 +11,7 @@
 
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/corner_residuals.h"
@@ -62,6 +63,10 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
 double ShapeCorrelationFactor(const MarkerSolution& solution,
                               const MarkerLinearization& linearization);
 
+// The same factor for the sizes of the markers.
+double SizeCorrelationFactor(const MarkerSolution& solution,
+                             const MarkerLinearization& linearization);
+
 // 1 sigma, in s, of the readout time (from the first row to the last), which must be a free
 // parameter. It is larger than `independent_sigma_s`, the sigma from independent errors of the
 // corners: cloth that moves between two frames looks like a rolling shutter, all corners of an
@@ -69,6 +74,10 @@ double ShapeCorrelationFactor(const MarkerSolution& solution,
 // (Student's t), and compression shortens the time.
 double ShutterSigma(double independent_sigma_s, const MarkerSolution& solution,
                     const MarkerLinearization& linearization);
+
+// Everything but the variance factor, the correlation factor and the share of large residuals.
+AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
+                                    const MarkerLinearization& linearization);
 
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution);

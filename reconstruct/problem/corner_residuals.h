@@ -28,17 +28,6 @@ struct VarianceFactor {
 // parameters for each image but the first and 3 for each point.
 VarianceFactor RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model);
 
-// By marker id, the factors by which the sigmas of the corners of a marker have to grow because it
-// moves relative to the others, like one on a flapping leech: such a marker scatters around its
-// mean place, and stays away from it for several images in a row. The square of a factor is the
-// variance of the marker's mean residuals of each image, times the number of images that count as
-// one independent image (the sum of the autocorrelations up to their first zero), relative to the
-// median marker and to calibrated sigmas. Holds only factors above 2, of markers that enough images
-// show. `problem` has no loss and was made with the factors `present`; the natural order of
-// the images' names is that of time.
-std::map<int, double> MotionFactors(const MarkerProblem& problem,
-                                    const std::map<int, double>& present, const Model& model);
-
 // Takes the corners beyond `max_sigmas` out of the model and appends them to `removed`.
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,
                     std::vector<RemovedObservation>* removed);

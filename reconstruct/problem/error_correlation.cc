@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "importer/base/log.h"
 #include "importer/base/natural_order.h"
@@ -22,19 +24,17 @@ constexpr int kBatchSize = 8, kMinNumBatches = 2, kMaxNumBatches = 5;
 // The simulation ends when 1 sigma of the expected movement is below this fraction of it.
 constexpr double kMaxMeanSigma = 0.005;
 
-// The linearized adjustment: maps errors of the residuals to movements of the shape, or of the
-// global parameter in `global_column` where that is not negative. Errors and residuals have one row
-// for each residual (corners, then priors) and one column for each case.
+// What the steps of all parameters change: one row for each quantity, one column for each case.
+using Movements = std::function<RowMajorMatrix(const ParameterColumns& steps)>;
+
+// The linearized adjustment: maps errors of the residuals to movements. Errors and residuals have
+// one row for each residual (corners, then priors) and one column for each case.
 class LinearAdjustment {
  public:
   LinearAdjustment(const MarkerState& state, const MarkerProblem& problem,
                    const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
-                   const std::vector<int>& groups, int global_column)
-      : jacobian_(jacobian), covariance_(covariance), global_column_(global_column) {
-    const std::vector<Eigen::Vector3d> positions = Positions(state);
-    motions_ = RigidMotions(positions);
-    motions_.conservativeResize(Eigen::NoChange, motions_.cols() + 1);
-    motions_.rightCols<1>() = ScaleGradient(positions).normalized();
+                   const std::vector<int>& groups, Movements movements)
+      : jacobian_(jacobian), covariance_(covariance), movements_(std::move(movements)) {
     num_groups_ = 1 + *std::max_element(groups.begin(), groups.end());
     std::map<ImageId, int> group_of_image;
     for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -62,7 +62,7 @@ class LinearAdjustment {
       row += jacobian_.corners[i].NumRows();
     }
     MultiplyByCovariance(covariance_, &parameters);
-    const Eigen::VectorXd squares = Movements(parameters).colwise().squaredNorm().transpose();
+    const Eigen::VectorXd squares = movements_(parameters).colwise().squaredNorm().transpose();
     return Eigen::Map<const Eigen::MatrixXd>(squares.data(), num_cases, num_groups_)
         .rowwise()
         .sum();
@@ -74,18 +74,12 @@ class LinearAdjustment {
   }
 
  private:
-  RowMajorMatrix Movements(const ParameterColumns& steps) const {
-    if (global_column_ >= 0) return steps.of_globals.row(global_column_);
-    return steps.of_points - motions_ * (motions_.transpose() * steps.of_points);
-  }
-
   const MarkerJacobian& jacobian_;
   const MarkerCovariance& covariance_;
-  int global_column_ = -1;
+  Movements movements_;
   Eigen::Index num_rows_ = 0;
   std::vector<int> group_of_block_;
   int num_groups_ = 0;
-  Eigen::MatrixXd motions_;  // orthonormal: rigid motions and scale
 };
 
 // Mean and standard deviation of the squared movement that independent errors cause.
@@ -134,6 +128,8 @@ struct Excess {
   double factor = 1.0;
   double factor_sigma = 0.0;  // of independent errors
   bool is_significant = false;
+
+  double SignificantFactor() const { return is_significant ? factor : 1.0; }
 };
 
 Excess FindExcess(const LinearAdjustment& adjustment, const MarkerProblem& problem,
@@ -166,20 +162,44 @@ std::vector<int> GroupImages(const Model& model, int max_num_groups) {
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                          const std::vector<int>& groups, int num_threads) {
-  const Excess excess = FindExcess(
-      LinearAdjustment(state, problem, jacobian, covariance, groups, -1), problem, num_threads);
+  const std::vector<Eigen::Vector3d> positions = Positions(state);
+  Eigen::MatrixXd motions = RigidMotions(positions);  // orthonormal, with that of the scale
+  motions.conservativeResize(Eigen::NoChange, motions.cols() + 1);
+  motions.rightCols<1>() = ScaleGradient(positions).normalized();
+  const auto of_shape = [&](const ParameterColumns& steps) -> RowMajorMatrix {
+    return steps.of_points - motions * (motions.transpose() * steps.of_points);
+  };
+  const Excess excess =
+      FindExcess(LinearAdjustment(state, problem, jacobian, covariance, groups, of_shape), problem,
+                 num_threads);
   LogDebug(
       "the residuals of groups of images move the shape {:.3f} +- {:.3f} times as far as "
       "independent errors",
       excess.factor, excess.factor_sigma);
-  return excess.is_significant ? excess.factor : 1.0;
+  return excess.SignificantFactor();
+}
+
+double CorrelationFactorOf(const Eigen::SparseMatrix<double>& by_points, const MarkerState& state,
+                           const MarkerProblem& problem, const MarkerJacobian& jacobian,
+                           const MarkerCovariance& covariance, const std::vector<int>& groups,
+                           int num_threads) {
+  const auto of_functions = [&](const ParameterColumns& steps) -> RowMajorMatrix {
+    return by_points * steps.of_points;
+  };
+  return FindExcess(LinearAdjustment(state, problem, jacobian, covariance, groups, of_functions),
+                    problem, num_threads)
+      .SignificantFactor();
 }
 
 double GlobalCorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                                const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                                const std::vector<int>& groups, int column, int num_threads) {
-  const Excess excess = FindExcess(
-      LinearAdjustment(state, problem, jacobian, covariance, groups, column), problem, num_threads);
+  const auto of_global = [column](const ParameterColumns& steps) -> RowMajorMatrix {
+    return steps.of_globals.row(column);
+  };
+  const Excess excess =
+      FindExcess(LinearAdjustment(state, problem, jacobian, covariance, groups, of_global), problem,
+                 num_threads);
   return std::max(1.0, excess.factor);
 }
 

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include <Eigen/SparseCore>
+
 #include "reconstruct/problem/marker_problem.h"
 #include "reconstruct/problem/normal_equations.h"
 
@@ -29,6 +31,13 @@ std::vector<int> GroupImages(const Model& model, int max_num_groups);
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                          const std::vector<int>& groups, int num_threads);
+
+// The same for linear functions of the points, such as the sizes of the markers: `by_points` has a
+// row for each function and a column for each coordinate, in the order of the parameters.
+double CorrelationFactorOf(const Eigen::SparseMatrix<double>& by_points, const MarkerState& state,
+                           const MarkerProblem& problem, const MarkerJacobian& jacobian,
+                           const MarkerCovariance& covariance, const std::vector<int>& groups,
+                           int num_threads);
 
 // The factor, 1 or more, by which the sigma of the global parameter in `column` has to grow. It is
 // found like CorrelationFactor(), from movements of this parameter instead of the shape, but

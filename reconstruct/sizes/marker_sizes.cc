@@ -41,12 +41,13 @@ double MetresPerUnit(const MarkerState& state) {
 }
 
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
+                                   double correlation_factor,
                                    const std::map<int, double>& inset_sigmas,
                                    const MarkerAdjustmentOptions& options,
                                    double print_scale_sigma) {
   const double print_tolerance = options.print_tolerance;
-  const std::vector<MarkerSize> sizes =
-      MeasureMarkers(state, covariance, inset_sigmas, options.print_resolution_m);
+  const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance, correlation_factor,
+                                                       inset_sigmas, options.print_resolution_m);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
   if (sizes.size() < 3) return verdict;  // of two markers, either may be the wrong one

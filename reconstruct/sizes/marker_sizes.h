@@ -28,7 +28,9 @@ struct MarkerSizeVerdict {
 };
 
 // Compares the mean side of each marker with the median of all markers. `covariance` must come from
-// a solution in which the printed sizes had hardly any weight. `inset_sigmas` holds, by marker id,
+// a solution in which the printed sizes had hardly any weight. Its sigmas grow by
+// `correlation_factor`, because errors that neighbouring images have in common, above all a motion
+// of the markers, would otherwise pass for errors of the print. `inset_sigmas` holds, by marker id,
 // the sigma of the marker's size that is due to the inset of its corners, which is the same in all
 // images; it is a fraction, and 0 for ids that it lacks. The options give 1 sigma of a printed
 // side: `print_tolerance` and `print_resolution_m`. A marker contradicts the others if it deviates
@@ -42,6 +44,7 @@ struct MarkerSizeVerdict {
 // markers, so each marker is compared with its own part. Differences below `print_scale_sigma` are
 // ignored because they would change the sigma of the scale by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
+                                   double correlation_factor,
                                    const std::map<int, double>& inset_sigmas,
                                    const MarkerAdjustmentOptions& options,
                                    double print_scale_sigma);

@@ -132,6 +132,33 @@ class IndependentDeviations {
   double degrees_of_freedom_ = 0.0;
 };
 
+struct MeasuredSides {
+  int count = 0;
+  double mean_ratio = 0.0;   // to the printed length, or on a curved surface to the chord
+  Eigen::VectorXd gradient;  // of mean_ratio by the marker's coordinates
+  double shortest_m = std::numeric_limits<double>::infinity(), longest_m = 0.0;
+};
+
+MeasuredSides MeasureSides(const MarkerBlock& marker) {
+  const auto sides = MarkerPriorError::Sides(marker.corners);
+  MeasuredSides measured;
+  measured.count = static_cast<int>(sides.size());
+  measured.gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
+  for (const auto& [a, b] : sides) {
+    const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
+    measured.shortest_m = std::min(measured.shortest_m, side.norm());
+    measured.longest_m = std::max(measured.longest_m, side.norm());
+    const int corner = marker.corners[static_cast<std::size_t>(a)];
+    const double chord_m =
+        marker.length_m * marker.chords.side_ratios[static_cast<std::size_t>(corner - 1)];
+    const double weight = 1.0 / (measured.count * chord_m);
+    measured.mean_ratio += weight * side.norm();
+    measured.gradient.segment<3>(3 * a) -= weight * side.normalized();
+    measured.gradient.segment<3>(3 * b) += weight * side.normalized();
+  }
+  return measured;
+}
+
 // Whether at least two thirds of the markers are not contradicting.
 bool MostAgree(const std::vector<bool>& is_contradicting) {
   const auto num = std::count(is_contradicting.begin(), is_contradicting.end(), true);
@@ -152,40 +179,46 @@ Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerI
   return mean;
 }
 
+Eigen::SparseMatrix<double> SizesByPoints(const MarkerState& state,
+                                          const MarkerCovariance& covariance) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < state.markers.size(); ++i) {
+    const Eigen::VectorXd gradient = MeasureSides(state.markers[i]).gradient;
+    for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+      entries.emplace_back(static_cast<Eigen::Index>(i), covariance.begins[i] + k, gradient[k]);
+    }
+  }
+  Eigen::SparseMatrix<double> by_points(static_cast<Eigen::Index>(state.markers.size()),
+                                        covariance.begins.back());
+  by_points.setFromTriplets(entries.begin(), entries.end());
+  return by_points;
+}
+
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
+                                       double correlation_factor,
                                        const std::map<int, double>& inset_sigmas,
                                        double print_resolution_m) {
   std::vector<MarkerSize> sizes;
   for (std::size_t i = 0; i < state.markers.size(); ++i) {
     const MarkerBlock& marker = state.markers[i];
-    const auto sides = MarkerPriorError::Sides(marker.corners);
-    if (sides.empty()) continue;
+    const MeasuredSides sides = MeasureSides(marker);
+    if (sides.count == 0) continue;
     MarkerSize size;
     size.marker_id = marker.marker_id;
     size.part = marker.part;
-    size.num_sides = static_cast<int>(sides.size());
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
-    double shortest_m = std::numeric_limits<double>::infinity(), longest_m = 0.0;
-    for (const auto& [a, b] : sides) {
-      const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
-      shortest_m = std::min(shortest_m, side.norm());
-      longest_m = std::max(longest_m, side.norm());
-      const int corner = marker.corners[static_cast<std::size_t>(a)];
-      const double chord_m =
-          marker.length_m * marker.chords.side_ratios[static_cast<std::size_t>(corner - 1)];
-      const double weight = 1.0 / (size.num_sides * chord_m);
-      size.ratio += weight * side.norm();
-      gradient.segment<3>(3 * a) -= weight * side.normalized();
-      gradient.segment<3>(3 * b) += weight * side.normalized();
-    }
-    size.unevenness = (longest_m - shortest_m) / marker.length_m;
+    size.num_sides = sides.count;
+    size.ratio = sides.mean_ratio;
+    size.unevenness = (sides.longest_m - sides.shortest_m) / marker.length_m;
+    const Eigen::VectorXd& gradient = sides.gradient;
     const auto found = inset_sigmas.find(marker.marker_id);
     const double inset_sigma = found == inset_sigmas.end() ? 0.0 : found->second;
-    size.block_variance = gradient.dot(covariance.marker_blocks[i] * gradient) +
-                          inset_sigma * inset_sigma +
-                          std::pow(print_resolution_m / marker.length_m, 2) / size.num_sides;
+    size.block_variance =
+        std::pow(correlation_factor, 2) * gradient.dot(covariance.marker_blocks[i] * gradient) +
+        inset_sigma * inset_sigma +
+        std::pow(print_resolution_m / marker.length_m, 2) / size.num_sides;
     size.by_factor.resize(covariance.factor.cols() + 1);
-    size.by_factor << covariance.FactorOf(i).transpose() * gradient, inset_sigma;
+    size.by_factor << correlation_factor * (covariance.FactorOf(i).transpose() * gradient),
+        inset_sigma;
     sizes.push_back(std::move(size));
   }
   return sizes;

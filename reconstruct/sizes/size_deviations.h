@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/normal_equations.h"
@@ -37,12 +38,19 @@ struct MarkerSize {
 
 using MarkerIdxs = std::vector<std::size_t>;  // indices into a vector of sizes
 
-// Markers without a whole side are left out. `inset_sigmas` holds, by marker id, the sigma of a
+// The change of each marker's MarkerSize::ratio (rows, in the order of the state; 0 without a whole
+// side) by the coordinates of all points (columns).
+Eigen::SparseMatrix<double> SizesByPoints(const MarkerState& state,
+                                          const MarkerCovariance& covariance);
+
+// Markers without a whole side are left out. The covariance's sigmas grow by `correlation_factor`.
+// `inset_sigmas` holds, by marker id, the sigma of a
 // marker's size that is due to the inset of its corners, as a fraction. It enters twice, as an
 // error that all markers share and as an equally large independent error of each marker, because
 // blur and the background around the margin vary between markers. `print_resolution_m` is 1 sigma
 // of each printed side whatever its length; the variances contain it.
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
+                                       double correlation_factor,
                                        const std::map<int, double>& inset_sigmas,
                                        double print_resolution_m);
 

@@ -21,6 +21,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     sizes/marker_curvature_test.cc
     sizes/marker_sizes_test.cc
     sizes/part_sizes_test.cc
+    sizes/runaway_markers_test.cc
     sizes/scale_bar_verdict_test.cc
     sizes/size_deviations_test.cc
     problem/error_correlation_test.cc

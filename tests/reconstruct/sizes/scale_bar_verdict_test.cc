@@ -237,7 +237,7 @@ class BarsOfAShrinkingModel : public MeasuredDistances {
     options.loss_sigmas = 1.0;     // so that poses do not follow the outliers
     MarkerAdjuster adjuster(options, noisy.layout, errors, model_);
     adjuster.PrepareSeed();
-    adjuster.AdjustToCorners();
+    adjuster.AdjustFromSeed();
     ASSERT_TRUE(adjuster.AddScaleBars());
     for (const int corner : corners) {
       for (const auto& [image_id, idx] : model_.points3D.at(10 * marker_id + corner).track) {
