@@ -183,8 +183,9 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool s
                                    const SurfaceOptions& options) {
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
-  CheckExtension(options, &SurfaceOptions::luff_extension_mm, MeanLength(lines), kLengthOfLines);
-  CheckExtension(options, &SurfaceOptions::leech_extension_mm, MeanLength(lines), kLengthOfLines);
+  const double length_m = MeanLength(lines);
+  CheckExtension(options, &SurfaceOptions::luff_extension_mm, length_m, kLengthOfLines);
+  CheckExtension(options, &SurfaceOptions::leech_extension_mm, length_m, kLengthOfLines);
   const std::vector<SurfaceRow> rows = MakeSurfaceRows(lines, options, &parameters.notes);
   const std::vector<double> vs = PlaceRows(rows, options, &parameters);
   SetKnownSides(lines, options, &parameters);

@@ -15,6 +15,7 @@ namespace {
 
 // Below this number of images, a marker does not tell its own motion.
 constexpr std::size_t kMinNumImages = 16;
+// Those all around a marker on a grid of rows; farther ones may move otherwise.
 constexpr std::size_t kNumNeighbours = 6;
 
 // Mean residual of a marker in an image, in sigmas of a mean of independent corners.

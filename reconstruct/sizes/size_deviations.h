@@ -44,11 +44,11 @@ Eigen::SparseMatrix<double> SizesByPoints(const MarkerState& state,
                                           const MarkerCovariance& covariance);
 
 // Markers without a whole side are left out. The covariance's sigmas grow by `correlation_factor`.
-// `inset_sigmas` holds, by marker id, the sigma of a
-// marker's size that is due to the inset of its corners, as a fraction. It enters twice, as an
-// error that all markers share and as an equally large independent error of each marker, because
-// blur and the background around the margin vary between markers. `print_resolution_m` is 1 sigma
-// of each printed side whatever its length; the variances contain it.
+// `inset_sigmas` holds, by marker id, the sigma of a marker's size that is due to the inset of its
+// corners, as a fraction. It enters twice, as an error that all markers share and as an equally
+// large independent error of each marker, because blur and the background around the margin vary
+// between markers. `print_resolution_m` is 1 sigma of each printed side whatever its length; the
+// variances contain it.
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
                                        double correlation_factor,
                                        const std::map<int, double>& inset_sigmas,

@@ -25,13 +25,17 @@ struct FlappingSail {
   int LastId() const { return *moving_ids.rbegin(); }
 };
 
-FlappingSail Flap(double period, int num_moving) {
+SyntheticScene StillSail() {
   SyntheticSceneOptions options;
   options.num_rows = 4;
   options.num_columns = 5;
   options.num_frames = 40;
+  return MakeSyntheticScene(options);
+}
+
+FlappingSail Flap(double period, int num_moving) {
   FlappingSail sail;
-  sail.scene = MakeSyntheticScene(options);
+  sail.scene = StillSail();
   for (auto marker = sail.scene.x_in_world.rbegin(); num_moving > 0; ++marker, --num_moving) {
     sail.moving_ids.insert(marker->first);
   }
@@ -145,11 +149,7 @@ double SizeCorrelationFactorOf(const SyntheticScene& scene) {
 TEST(MovingMarker, TheirSizesAreKnownLessThanIndependentErrorsWouldSay) {
   const FlappingSail sail = Flap(20, 5);
   EXPECT_GT(SizeCorrelationFactorOf(sail.scene), 3.0);
-  SyntheticSceneOptions options;
-  options.num_rows = 4;
-  options.num_columns = 5;
-  options.num_frames = 40;
-  SyntheticScene still = MakeSyntheticScene(options);
+  SyntheticScene still = StillSail();
   AddNoise({0.1, 0, 0, 0, 3}, &still);
   EXPECT_LT(SizeCorrelationFactorOf(still), 1.2);
 }
