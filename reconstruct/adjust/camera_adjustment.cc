@@ -54,7 +54,7 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
   for (const auto& [camera_id, estimate] : adjuster.EstimateCameras()) {
     adjustment.focal_sigmas_px[camera_id] = estimate.sigmas.front();
   }
-  Model result = adjuster.TakeModel();
+  Model result = adjuster.ModelAtMiddleRow();
   adjustment.explained = Explained(result);
   UntieTurnedCameras(turned, &result);
   adjustment.cameras = result.cameras;

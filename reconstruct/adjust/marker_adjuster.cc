@@ -264,8 +264,7 @@ void MarkerAdjuster::Finish() {
       AddInset(solution_.weights.inset_as_scale, found.camera, &found.sigmas);
     }
   }
-  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->motions,
-                  &solution_.model);
+  solution_.model = ModelAtMiddleRow();
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(solution_.model);
   CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px,
@@ -283,6 +282,12 @@ std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
     for (double& sigma : found.sigmas) sigma *= correlation_factor;
   }
   return cameras;
+}
+
+Model MarkerAdjuster::ModelAtMiddleRow() const {
+  Model model = solution_.model;
+  MoveToMiddleRow(solution_.state.rolling_shutter_s, solution_.corner_errors->motions, &model);
+  return model;
 }
 
 Model MarkerAdjuster::WithRemovedCorners(std::vector<RemovedObservation>* lost) const {

@@ -60,6 +60,8 @@ class MarkerAdjuster {
   // After Finish: uses the jackknife's sigmas for the cameras where they are larger.
   void WidenCameraSigmas();
 
+  // With the image points where they would be at the time of the middle row, as after Finish().
+  Model ModelAtMiddleRow() const;
   Model TakeModel() { return std::move(solution_.model); }
   MarkerAdjustmentSummary TakeSummary();
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "importer/camera/turned_camera.h"
+#include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/geometry/covariance_update.h"
 #include "tests/reconstruct/scene_model.h"
@@ -144,6 +145,17 @@ TEST_F(RollingShutter, IsFoundInEitherDirectionAndTakenOut) {
     EXPECT_THAT(summary.warnings, IsEmpty());
     EXPECT_EQ(without.uncertainty.rolling_shutter_sigma_s, 0);
   }
+}
+
+// Otherwise the search for the camera would prefer a wrong one that imitates the motion.
+TEST_F(RollingShutter, CornersThatItMovesAreExplainedByTheRightCamera) {
+  Stage({}, 16);
+  Film(0.02, 0.02, 1);
+  double num_corners = 0.0;
+  for (const ModelImage& image : model_.images) {
+    num_corners += static_cast<double>(image.points2D.size());
+  }
+  EXPECT_GT(AdjustCameras({}, scene_.layout, corner_errors_, model_).explained, 0.9 * num_corners);
 }
 
 // The velocity changes by a sixth while a frame is read.
