@@ -64,7 +64,9 @@ std::optional<FittedDetection> RefineMarker(const cv::Mat& dark_on_light, const 
   FittedDetection detection;
   detection.marker.marker_id = quad.marker_id;
   if (fits_edges) {
-    const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);
+    const int num_saddles = RefineSaddleCorners(dark_on_light, cells,
+                                                is_fitted ? kSaddleReachOfFit : kSaddleReachOfQuad,
+                                                &refined->corners_px);
     detection.marker.is_fallback = !is_fitted && num_saddles < kNumCorners;
   }
   detection.marker.corner_sigma_px = refined->sigma_px;

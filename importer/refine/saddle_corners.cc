@@ -56,7 +56,8 @@ bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner,
 
 }  // namespace
 
-int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, QuadCorners* corners_px) {
+int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, double reach_cells,
+                        QuadCorners* corners_px) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols &&
                 cells.rows > 0);
   const int num_cells = cells.rows;
@@ -82,7 +83,7 @@ int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, QuadCorners* 
   int num_moved = 0;
   for (std::size_t k = 0; k < saddles.size(); ++k) {
     const Eigen::Vector2d moved_px(points[k].x, points[k].y);
-    if ((moved_px - (*corners_px)[saddles[k]]).norm() > 0.5 * cell_px) continue;
+    if ((moved_px - (*corners_px)[saddles[k]]).norm() > reach_cells * cell_px) continue;
     (*corners_px)[saddles[k]] = moved_px;
     ++num_moved;
   }

@@ -27,6 +27,7 @@ struct Picture {
   double blur_px = 0.9;
   double spread_px = 0.0;
   bool touching = true;
+  double gap_px = 0.0;  // between the corners, along both sides
   double quiet_zone_cells = 100.0;
   double gamma = 1.0;
 
@@ -50,7 +51,8 @@ struct Picture {
       for (int x = 0; x < gray.cols; ++x) {
         const Eigen::Vector2d p = Eigen::Rotation2Dd(-angle) * (Eigen::Vector2d(x, y) - center_px);
         const double marker = Inside(std::abs(p.x()) - half_px) * Inside(std::abs(p.y()) - half_px);
-        const double others = Inside(half_px - std::abs(p.x())) * Inside(half_px - std::abs(p.y()));
+        const double others =
+            Inside(half_px + gap_px - std::abs(p.x())) * Inside(half_px + gap_px - std::abs(p.y()));
         const double cell_px = 2 * half_px / kNumCells;
         const double middle = Inside(std::abs(p.x()) - cell_px) * Inside(std::abs(p.y()) - cell_px);
         const double paper_px = half_px + quiet_zone_cells * cell_px;
@@ -69,7 +71,8 @@ TEST(SaddleCornersTest, FindsTheMeetingPointOfTwoSquares) {
   const Picture picture;
   QuadCorners corners = picture.Corners();
   for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(0.8, -0.6);
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
+  EXPECT_EQ(
+      RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), kSaddleReachOfQuad, &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
   }
@@ -79,9 +82,25 @@ TEST(SaddleCornersTest, SpreadInkDoesNotMoveThem) {
   Picture picture;
   picture.spread_px = 0.3;
   QuadCorners corners = picture.Corners();
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
+  EXPECT_EQ(
+      RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), kSaddleReachOfQuad, &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
+  }
+}
+
+// Markers with narrow margins that lie corner to corner. The middle of the gap is a saddle point.
+TEST(SaddleCornersTest, LeavesCornersThatAGapKeepsApart) {
+  Picture picture;
+  for (const double gap_px : {2.0, 3.0, 4.0}) {
+    picture.gap_px = gap_px;
+    QuadCorners corners = picture.Corners();
+    for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(0.05, -0.04);
+    const QuadCorners before = corners;
+    EXPECT_EQ(
+        RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), kSaddleReachOfFit, &corners),
+        0);
+    EXPECT_EQ(corners, before);
   }
 }
 
@@ -91,7 +110,8 @@ TEST(SaddleCornersTest, LeavesTheCornersOfALonelySquare) {
   QuadCorners corners = picture.Corners();
   corners[0].x() += 0.8;
   const QuadCorners before = corners;
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
+  EXPECT_EQ(
+      RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), kSaddleReachOfQuad, &corners), 0);
   EXPECT_EQ(corners, before);
 }
 
@@ -108,7 +128,9 @@ TEST(SaddleCornersTest, LeavesTheCornersOfANarrowQuietZoneOnDarkGround) {
         picture.blur_px = blur_px;
         picture.gamma = gamma;
         QuadCorners corners = picture.Corners();
-        EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
+        EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), kSaddleReachOfQuad,
+                                      &corners),
+                  0);
       }
     }
   }
@@ -117,7 +139,9 @@ TEST(SaddleCornersTest, LeavesTheCornersOfANarrowQuietZoneOnDarkGround) {
 TEST(SaddleCornersTest, LeavesCellsThatAreTooSmallToTell) {
   const Picture picture;
   QuadCorners corners = picture.Corners();
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(20), &corners), 0);
+  EXPECT_EQ(
+      RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(20), kSaddleReachOfQuad, &corners),
+      0);
 }
 
 }  // namespace
