@@ -81,8 +81,7 @@ std::optional<MarkerPair> FindPair(const char* part, const Layout& layout,
 Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
                         const NumbersWithGradient& own) {
   const auto estimate = [&](SectionNumber number) {
-    return Estimate{own.numbers[number],
-                    SigmaOfGradient(context.centers, own.gradient.row(number))};
+    return Estimate{own.numbers[number], SigmaOf(number, context.centers, own)};
   };
   Section section;
   section.part = context.part.name;
@@ -118,13 +117,17 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   const auto last = std::find(of_line.rbegin(), of_line.rend(), section->markers.back().marker_id);
   section->num_missing_at_luff = static_cast<int>(first - of_line.begin());
   section->num_missing_at_leech = static_cast<int>(last - of_line.rbegin());
+  section->reaches_luff = line.luff_offset_m.has_value();
+  section->reaches_leech = line.leech_offset_m.has_value();
 }
 
 // The number of missing markers of a height is the larger one of the lines next to it, below and
-// above. The first `num_lines` sections are lines, from the lowest up; the others are heights.
+// above, and it reaches the edges that both reach. The first `num_lines` sections are lines, from
+// the lowest up; the others are heights.
 void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sections) {
   for (std::size_t i = num_lines; i < sections->size(); ++i) {
     Section& height = (*sections)[i];
+    height.reaches_luff = height.reaches_leech = true;
     std::size_t above = 0;
     while (above < num_lines && (*sections)[above].height_m <= height.height_m) ++above;
     for (std::size_t j = above > 0 ? above - 1 : 0; j < std::min(above + 1, num_lines); ++j) {
@@ -132,6 +135,8 @@ void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sectio
       height.num_missing_at_luff = std::max(height.num_missing_at_luff, line.num_missing_at_luff);
       height.num_missing_at_leech =
           std::max(height.num_missing_at_leech, line.num_missing_at_leech);
+      height.reaches_luff = height.reaches_luff && line.reaches_luff;
+      height.reaches_leech = height.reaches_leech && line.reaches_leech;
     }
   }
 }
@@ -149,7 +154,7 @@ PartSections CollectSections(const PartContext& context,
   auto& [sections, numbers] = part;
   for (const LineCurve& line : lines) {
     numbers.push_back(NumbersOfLine(context, line));
-    sections.push_back(DescribeSection(context, line.fit.curve, numbers.back()));
+    sections.push_back(DescribeSection(context, line.curve, numbers.back()));
     sections.back().name = line.name;
     AddMarkers(context, line, &sections.back());
   }
@@ -195,6 +200,13 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
   const std::string note =
       ReferenceNote(reference, context.part.name, boom.has_value(), centerline.has_value());
   if (!note.empty()) report->notes.push_back(note);
+  if (std::any_of(lines.begin(), lines.end(), [](const LineCurve& line) {
+        return line.Ends().before_m > 0 || line.Ends().after_m > 0;
+      })) {
+    report->notes.push_back(
+        fmt::format("sections of {} go on beyond the outer markers, to the edges of the cloth",
+                    context.part.name));
+  }
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return a.height_m < b.height_m; });
   for (Section& section : sections) report->sections.push_back(std::move(section));

@@ -2,7 +2,8 @@
 // line of the layout and at given heights. README.md of this folder defines them with a drawing.
 //
 // The section of a line is a smoothing spline through its marker centres (section_spline.h) from
-// the first to the last whole marker; the markers do not reach the edges of the cloth. Centres that
+// the first to the last whole marker. Where the layout says how far the edges of the cloth are from
+// these, it continues to the edges with the curvature that it has at its ends. Centres that
 // are means of corners lie inside the bend of the cloth: cloth_places.h moves them. The section
 // at a height is the cut at right angles to up through interpolating splines that run across the
 // lines at equal fractions of their lengths.
@@ -67,6 +68,8 @@ struct Section {
   // Markers of the layout's line before the first and after the last whole one; for a height, of
   // the lines next to it. Without them, all numbers are those of a shorter chord.
   int num_missing_at_luff = 0, num_missing_at_leech = 0;
+  // Whether the curve ends at the edge of the cloth; otherwise it ends at the outer marker.
+  bool reaches_luff = false, reaches_leech = false;
 };
 
 // "3 markers missing at the luff", or nothing for a section of the whole line.

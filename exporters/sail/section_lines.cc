@@ -10,6 +10,8 @@
 namespace velamap {
 namespace {
 
+constexpr double kMaxReach = 0.5;
+
 // The reason why no curve can be fitted to the markers; empty if one can.
 std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& indices,
                        const Eigen::Vector3d& up) {
@@ -35,6 +37,36 @@ std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& ind
     }
   }
   return "";
+}
+
+// The distance along a line from its outer marker to the edge of the cloth; nothing where the
+// layout does not give it, and where a marker of the layout is missing in between.
+std::optional<double> OffsetToEdge(const ClothEdge& edge, const LayoutPart& part,
+                                   std::size_t line_idx, int marker_id_of_layout, int marker_id) {
+  if (marker_id != marker_id_of_layout || !edge.points.empty()) return std::nullopt;
+  if (!edge.line.empty()) {
+    const auto along = std::find_if(part.vertical.begin(), part.vertical.end(),
+                                    [&](const MarkerLine& line) { return line.name == edge.line; });
+    if (along == part.vertical.end()) return std::nullopt;
+    const std::vector<int>& ids = along->marker_ids;
+    if (std::find(ids.begin(), ids.end(), marker_id) == ids.end()) return std::nullopt;
+    return edge.OffsetOfLine(0).value_or(0.0);
+  }
+  return edge.OffsetOfLine(line_idx);
+}
+
+void SetOffsets(const LayoutPart& part, const MarkerCenters& centers, LineCurve* line) {
+  const auto line_idx = static_cast<std::size_t>(line->place_in_layout);
+  const std::vector<int>& of_layout = part.horizontal[line_idx].marker_ids;
+  const auto id = [&](int index) { return centers.marker_ids[static_cast<std::size_t>(index)]; };
+  const int first = line->indices.front(), last = line->indices.back();
+  line->luff_offset_m = OffsetToEdge(part.edges.luff, part, line_idx, of_layout.front(), id(first));
+  line->leech_offset_m = OffsetToEdge(part.edges.leech, part, line_idx, of_layout.back(), id(last));
+  // As for the surface, an edge so far away is a mistake in the layout.
+  const double length_m = (centers.x_m.col(last) - centers.x_m.col(first)).norm();
+  for (std::optional<double>* offset_m : {&line->luff_offset_m, &line->leech_offset_m}) {
+    if (offset_m->value_or(0.0) > kMaxReach * length_m) offset_m->reset();
+  }
 }
 
 // Removes lines that run opposite to the majority, or to the lowest line in a tie.
@@ -102,6 +134,7 @@ void SmoothTogether(bool with_sigma, const MarkerCenters& centers, std::vector<L
   for (std::size_t i = 0; i < alike.size(); ++i) {
     alike[i]->smoothing = smoothing;
     alike[i]->fit = FitCurve(data[i], smoothing);
+    alike[i]->curve = ExtendCurve(alike[i]->fit.curve, alike[i]->Ends());
   }
 }
 
@@ -130,7 +163,7 @@ CurveData MarkerCenters::Data(const std::vector<int>& indices) const {
 }
 
 SpaceCurve LineCurve::Refit(const MarkerCenters& centers) const {
-  return FitCurveOnly(centers.Data(indices), smoothing);
+  return ExtendCurve(FitCurveOnly(centers.Data(indices), smoothing), Ends());
 }
 
 PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
@@ -162,6 +195,7 @@ PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
       curves.missing.push_back({line.name, problem});
       continue;
     }
+    SetOffsets(part, centers, &curve);
     curves.lines.push_back(std::move(curve));
   }
   for (const bool with_sigma : {false, true}) SmoothTogether(with_sigma, centers, &curves.lines);

@@ -30,9 +30,13 @@ struct LineCurve {
   int place_in_layout = 0;   // among the part's horizontal lines
   std::vector<int> indices;  // into the MarkerCenters, from luff to leech
   double smoothing = 0.0;
-  CurveFit fit;
+  CurveFit fit;  // between the outer markers
+  // From there to the edges of the cloth, where the layout gives the distances.
+  std::optional<double> luff_offset_m{}, leech_offset_m{};
+  SpaceCurve curve;  // from edge to edge
 
-  // Fits the same line with moved markers.
+  CurveEnds Ends() const { return {luff_offset_m.value_or(0.0), leech_offset_m.value_or(0.0)}; }
+  // Fits the same line with moved markers, from edge to edge.
   SpaceCurve Refit(const MarkerCenters& centers) const;
 };
 

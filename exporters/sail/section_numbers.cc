@@ -54,6 +54,19 @@ SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes) 
   return numbers;
 }
 
+// NumbersWithGradient::beyond_sigmas. Beyond an offset a, a change c of the curvature turns the
+// curve by c a^2 / 2; the effect on the numbers that are lengths is far below their noise.
+SectionNumbers BeyondSigmas(const PartContext& context, const LineCurve& line) {
+  const double change =
+      CurvatureChange(line.fit.curve, ProfileAxesOf(line.curve, context.axes).depth);
+  const CurveEnds ends = line.Ends();
+  SectionNumbers sigmas = SectionNumbers::Zero();
+  sigmas[kEntryAngle] = kDegPerRad * change * ends.before_m * ends.before_m / 2;
+  sigmas[kExitAngle] = sigmas[kLeechAzimuth] =
+      kDegPerRad * change * ends.after_m * ends.after_m / 2;
+  return sigmas;
+}
+
 }  // namespace
 
 // The best of a grid, refined to the zero of the derivative.
@@ -130,16 +143,17 @@ double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes) {
 }
 
 NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line) {
-  return {ComputeNumbers(line.fit.curve, context.axes),
+  return {ComputeNumbers(line.curve, context.axes),
           Differentiate(context.centers, line.indices, kNumSectionNumbers,
                         [&](const MarkerCenters& moved, int) {
                           return ComputeNumbers(line.Refit(moved), context.axes);
-                        })};
+                        }),
+          BeyondSigmas(context, line)};
 }
 
 std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines) {
   std::vector<Eigen::Matrix3Xd> samples;
-  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.fit.curve));
+  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.curve));
   return samples;
 }
 
@@ -164,9 +178,14 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
     }
     return ComputeNumbers(*moved_cut.curve, context.axes);
   };
-  return {ComputeNumbers(cut, context.axes),
-          Differentiate(context.centers, {indices.begin(), indices.end()}, kNumSectionNumbers,
-                        numbers)};
+  SectionNumbers beyond_sigmas = SectionNumbers::Zero();
+  for (const LineCurve& line : lines) {
+    beyond_sigmas = beyond_sigmas.cwiseMax(BeyondSigmas(context, line));
+  }
+  return {
+      ComputeNumbers(cut, context.axes),
+      Differentiate(context.centers, {indices.begin(), indices.end()}, kNumSectionNumbers, numbers),
+      beyond_sigmas};
 }
 
 NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair) {
@@ -180,7 +199,8 @@ NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& 
   };
   return {
       azimuth(context.centers, 0),
-      Differentiate(context.centers, {pair.first_idx, pair.last_idx}, kNumSectionNumbers, azimuth)};
+      Differentiate(context.centers, {pair.first_idx, pair.last_idx}, kNumSectionNumbers, azimuth),
+      SectionNumbers::Zero()};
 }
 
 std::optional<double> SigmaOfGradient(const MarkerCenters& centers,
@@ -193,6 +213,20 @@ std::optional<double> SigmaOfGradient(const MarkerCenters& centers,
   }
   const double variance = gradient * centers.covariance_m2 * gradient.transpose();
   return std::sqrt(std::max(0.0, variance));
+}
+
+std::optional<double> SigmaOf(SectionNumber number, const MarkerCenters& centers,
+                              const NumbersWithGradient& own,
+                              const NumbersWithGradient* reference) {
+  Eigen::RowVectorXd gradient = own.gradient.row(number);
+  if (reference != nullptr) gradient -= reference->gradient.row(number);
+  const std::optional<double> by_markers = SigmaOfGradient(centers, gradient);
+  if (!by_markers) return std::nullopt;
+  const bool is_itself = reference != nullptr && gradient.isZero(0.0);
+  const double of_own = is_itself ? 0.0 : own.beyond_sigmas[number];
+  const double of_reference =
+      is_itself || reference == nullptr ? 0.0 : reference->beyond_sigmas[number];
+  return std::hypot(*by_markers, of_own, of_reference);
 }
 
 }  // namespace velamap

@@ -60,11 +60,13 @@ struct MarkerPair {
   int first_idx = 0, last_idx = 0;
 };
 
-// One row per number, one column per coordinate of the marker centres. NaN if no marker of the
-// section has a sigma.
 struct NumbersWithGradient {
   SectionNumbers numbers;
+  // One row per number, one column per coordinate of the marker centres. NaN if no marker of the
+  // section has a sigma.
   Eigen::MatrixXd gradient;
+  // 1 sigma of what the curvature may change beyond the outer markers: as much as between them.
+  SectionNumbers beyond_sigmas = SectionNumbers::Zero();
 };
 
 NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line);
@@ -84,6 +86,11 @@ Eigen::MatrixXd Differentiate(const MarkerCenters& centers, const std::vector<in
 // Sigma of a number with this gradient; nothing if it depends on a marker without a sigma.
 std::optional<double> SigmaOfGradient(const MarkerCenters& centers,
                                       const Eigen::RowVectorXd& gradient);
+
+// Sigma of a number of a section, or of the difference from the reference's; nothing as above.
+std::optional<double> SigmaOf(SectionNumber number, const MarkerCenters& centers,
+                              const NumbersWithGradient& own,
+                              const NumbersWithGradient* reference = nullptr);
 
 // Points of the lines as CutAtHeight takes them.
 std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines);

@@ -12,7 +12,7 @@ namespace {
 Estimate Difference(SectionNumber number, const MarkerCenters& centers,
                     const NumbersWithGradient& own, const NumbersWithGradient& reference) {
   return {own.numbers[number] - reference.numbers[number],
-          SigmaOfGradient(centers, own.gradient.row(number) - reference.gradient.row(number))};
+          SigmaOf(number, centers, own, &reference)};
 }
 
 // Whether a line below the lowest one with a section has none in this clip. Layouts list the lines

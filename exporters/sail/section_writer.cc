@@ -59,6 +59,8 @@ void WriteSectionRecord(const Section& section, CsvWriter* csv) {
   csv->AddField(section.num_missing_at_luff);
   csv->AddField(section.num_missing_at_leech);
   csv->AddField("");  // reason
+  csv->AddField(section.reaches_luff ? 1 : 0);
+  csv->AddField(section.reaches_leech ? 1 : 0);
   csv->EndRecord();
 }
 
@@ -68,6 +70,7 @@ void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
   csv->AddField(missing.name);
   for (std::size_t i = 0; i < kNumEmpty; ++i) csv->AddField("");
   csv->AddField(missing.reason);
+  for (int i = 0; i < 2; ++i) csv->AddField("");
   csv->EndRecord();
 }
 
@@ -80,8 +83,8 @@ void WriteSectionsCsv(const SectionReport& report, std::ostream& out) {
     csv.AddField(column.file_key);
     csv.AddField(fmt::format("sigma_{}", column.file_key));
   }
-  for (const char* key :
-       {"residual_rms_mm", "num_missing_at_luff", "num_missing_at_leech", "reason"}) {
+  for (const char* key : {"residual_rms_mm", "num_missing_at_luff", "num_missing_at_leech",
+                          "reason", "reaches_luff", "reaches_leech"}) {
     csv.AddField(key);
   }
   csv.EndRecord();
@@ -103,6 +106,8 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     }
     object["num_missing_at_luff"] = section.num_missing_at_luff;
     object["num_missing_at_leech"] = section.num_missing_at_leech;
+    object["reaches_luff"] = section.reaches_luff;
+    object["reaches_leech"] = section.reaches_leech;
     if (section.is_line) {
       object["num_effective_parameters"] = section.num_effective_parameters;
       object["residual_rms_mm"] = ResidualRmsMm(section);

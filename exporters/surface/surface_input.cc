@@ -39,19 +39,14 @@ std::optional<SurfaceMarker> Find(const MarkerShape& shape, int marker_id) {
   return result;
 }
 
-std::optional<double> OffsetOf(const ClothEdge& edge, std::size_t line_idx) {
-  if (edge.offsets_m.empty()) return std::nullopt;
-  return edge.offsets_m[edge.offsets_m.size() == 1 ? 0 : line_idx];
-}
-
 // For luff and leech: the offset of a line, unless it counts from places along the edge.
 std::optional<double> OffsetFromLine(const ClothEdge& edge, std::size_t line_idx) {
-  return edge.HasPlaces() ? std::nullopt : OffsetOf(edge, line_idx);
+  return edge.HasPlaces() ? std::nullopt : edge.OffsetOfLine(line_idx);
 }
 
 // For foot and head, whose line is an outer one of the surface.
 std::optional<double> OffsetFromOuterLine(const ClothEdge& edge) {
-  if (!edge.line.empty()) return OffsetOf(edge, 0).value_or(0.0);
+  if (!edge.line.empty()) return edge.OffsetOfLine(0).value_or(0.0);
   return OffsetFromLine(edge, 0);
 }
 
@@ -105,7 +100,7 @@ void SetPoints(const MarkerShape& shape, const LayoutPart& part, const EdgeOfPla
   }
   SurfaceEdge& edge = places.edge;
   edge.points_m = points_m;
-  edge.beyond_m = OffsetOf(places.in_layout, 0).value_or(0.0);
+  edge.beyond_m = places.in_layout.OffsetOfLine(0).value_or(0.0);
   for (const CornerId& point : named) {
     const bool is_other = others->count(point.marker_id) > 0;
     if (point.corner == 0 && edge.beyond_m <= 0) others->erase(point.marker_id);

@@ -34,6 +34,11 @@ struct ClothEdge {
   // Two or more points of markers along the edge; corner 0 is the centre.
   std::vector<CornerId> points{};
 
+  // For luff and leech, by horizontal line of the part.
+  std::optional<double> OffsetOfLine(std::size_t line_idx) const {
+    if (offsets_m.empty()) return std::nullopt;
+    return offsets_m[offsets_m.size() == 1 ? 0 : line_idx];
+  }
   bool IsKnown() const { return !offsets_m.empty() || !line.empty() || !points.empty(); }
   bool HasPlaces() const { return !line.empty() || !points.empty(); }
 };
