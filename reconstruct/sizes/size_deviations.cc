@@ -33,8 +33,10 @@ void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const
              double extra_variance, Deviations* deviations) {
   const MedianSize median = MedianOf(sizes, others);
   for (const std::size_t i : idxs) {
-    deviations->values[i] = sizes[i].ratio / median.ratio - 1.0;
-    deviations->shared[i] = sizes[i].by_factor - median.by_factor;
+    // Derivatives of the quotient of the ratios, which the scale of all does not change.
+    const double quotient = sizes[i].ratio / median.ratio;
+    deviations->values[i] = quotient - 1.0;
+    deviations->shared[i] = (sizes[i].by_factor - quotient * median.by_factor) / median.ratio;
     deviations->variances[i] =
         sizes[i].block_variance + deviations->shared[i].squaredNorm() + extra_variance;
   }
