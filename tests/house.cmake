@@ -70,9 +70,11 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_errors corner_residuals error_correlation marker_adjustment_options marker_chords
+  corner_errors corner_residuals corner_whitening marker_adjustment_options marker_chords
   marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions
   rolling_shutter scale_bar)
+house_folder(reconstruct/correlation PUBLIC
+  corner_correlation error_correlation)
 house_folder(reconstruct/sizes PUBLIC
   bend_evidence bent_corners marker_curvature marker_sizes moving_markers runaway_markers
   scale_bar_verdict size_deviations student_factor)

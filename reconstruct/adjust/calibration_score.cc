@@ -7,6 +7,7 @@
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/geometry/symmetric_eigen.h"
+#include "reconstruct/correlation/corner_correlation.h"
 #include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
@@ -44,6 +45,8 @@ double HalfDiagonal(const Camera& camera) {
 // correlate with the part of a warp that the adjustment does not absorb.
 RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, CameraId camera_id,
                             const RowMajorMatrix& residuals) {
+  RowMajorMatrix residuals_px = residuals;
+  ResidualsToPixels(problem, &residuals_px);
   const Camera& camera = model.cameras.at(camera_id);
   std::map<ImageId, const ModelImage*> images;
   for (const ModelImage& image : model.images) {
@@ -56,11 +59,11 @@ RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, Ca
     if (image == images.end()) continue;
     const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
     const Eigen::Vector2d found_px = image->second->points2D.at(element.point2D_idx).x_in_image_px;
-    const Eigen::Vector2d by_model_px =
-        found_px + problem.corner_sigmas_px[i] * residuals.block<2, 1>(row, 0);
+    const Eigen::Vector2d by_model_px = found_px + residuals_px.block<2, 1>(row, 0);
     const Eigen::Vector2d offset = (by_model_px - PrincipalPoint(camera)) / HalfDiagonal(camera);
-    design.middleRows<2>(row) = WarpsAt(offset.x(), offset.y()) / problem.corner_sigmas_px[i];
+    design.middleRows<2>(row) = WarpsAt(offset.x(), offset.y());
   }
+  PixelsToResiduals(problem, &design);
   return design;
 }
 
@@ -134,13 +137,11 @@ CalibrationEvidence TestCamera(const Model& model, CameraId camera_id,
   };
   evidence.focal_share = share_of(kFocal, 1);
   evidence.distortion_share = share_of(kFirstDistortion, kNumWarps - kFirstDistortion);
-  const Eigen::VectorXd explained = left * fit.changes;
-  double sum_px2 = 0.0;
-  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
-    sum_px2 += explained.segment<2>(2 * static_cast<Eigen::Index>(i)).squaredNorm() *
-               std::pow(problem.corner_sigmas_px[i], 2);
-  }
-  evidence.systematic_px = std::sqrt(sum_px2 / static_cast<double>(problem.corners.size()));
+  RowMajorMatrix explained_px = left * fit.changes;
+  ResidualsToPixels(problem, &explained_px);
+  const auto num_corners = static_cast<Eigen::Index>(problem.corners.size());
+  evidence.systematic_px = std::sqrt(explained_px.topRows(2 * num_corners).squaredNorm() /
+                                     static_cast<double>(num_corners));
   const double half_diagonal_px = HalfDiagonal(model.cameras.at(camera_id));
   evidence.focal_change = fit.changes[kFocal] / half_diagonal_px;
   evidence.focal_sigma = std::sqrt(fit.covariance(kFocal, kFocal)) / half_diagonal_px;

@@ -17,8 +17,8 @@
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/pose_step.h"
 #include "reconstruct/adjust/camera_model_choice.h"
+#include "reconstruct/correlation/error_correlation.h"
 #include "reconstruct/model/reprojection.h"
-#include "reconstruct/problem/error_correlation.h"
 #include "reconstruct/problem/rolling_shutter.h"
 
 namespace velamap {

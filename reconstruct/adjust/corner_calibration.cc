@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "importer/base/log.h"
+#include "reconstruct/correlation/corner_correlation.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
@@ -50,8 +51,13 @@ CornerCalibration CalibrateBySquares(MarkerSolution* solution) {
     const double variance = sum / redundancy;
     const double before = solution->weights.corner_factor;
     const double factor = CornerFactor(variance * before * before, redundancy);
-    if (round < kMaxNumRounds && std::abs(factor / before - 1.0) > kMaxChange) {
+    const double correlation = EstimateCornerCorrelation(
+        linearization->problem, linearization->jacobian, linearization->covariance);
+    const double change = std::max(std::abs(factor / before - 1.0),
+                                   std::abs(correlation - solution->weights.corner_correlation));
+    if (round < kMaxNumRounds && change > kMaxChange) {
       solution->weights.corner_factor = factor;
+      solution->weights.corner_correlation = correlation;
       continue;
     }
     const auto num_above =

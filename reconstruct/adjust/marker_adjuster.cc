@@ -21,6 +21,7 @@
 #include "reconstruct/adjust/rolling_shutter_choice.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
+#include "reconstruct/correlation/corner_correlation.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
@@ -55,6 +56,7 @@ MarkerAdjuster::MarkerAdjuster(const MarkerAdjustmentOptions& options, const Lay
   solution_.layout = &layout;
   solution_.corner_errors = &corner_errors;
   solution_.calibration = model.cameras;
+  solution_.weights.corner_correlation = kUsualCornerCorrelation;
   solution_.model = std::move(model);
 }
 
@@ -112,6 +114,8 @@ void MarkerAdjuster::RejectContradictingSizes() {
       JudgeMarkerSizes(linearization->state, linearization->covariance,
                        SizeCorrelationFactor(solution_, *linearization), InsetSigmas(solution_),
                        solution_.options, PrintScaleSigma(solution_.options, solution_.weights));
+  solution_.weights.corner_correlation = EstimateCornerCorrelation(
+      linearization->problem, linearization->jacobian, linearization->covariance);
   solution_.weights.print_tolerance = verdict.print_tolerance;
   solution_.weights.markers_without_size = verdict.contradicting;
   solution_.weights.part_scale_sigma = verdict.part_scale_sigma;

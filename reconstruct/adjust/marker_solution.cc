@@ -10,8 +10,9 @@
 #include "importer/base/statistics.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
+#include "reconstruct/correlation/corner_correlation.h"
+#include "reconstruct/correlation/error_correlation.h"
 #include "reconstruct/geometry/covariance_update.h"
-#include "reconstruct/problem/error_correlation.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/problem/scale_bar.h"
@@ -73,8 +74,8 @@ bool HoldFoldedDistortion(MarkerSolution* solution) {
   return true;
 }
 
-// The shift of the corners, in their sigmas, by 1 sigma of the velocity error that the corners of
-// an image share: one column for the velocity along x, one for that along y.
+// The residuals of the corners that are shifted by 1 sigma of the velocity error that the corners
+// of an image share: one column for the velocity along x, one for that along y.
 RowMajorMatrix SharedShiftErrors(const MarkerSolution& solution,
                                  const MarkerLinearization& linearization) {
   const MarkerProblem& problem = linearization.problem;
@@ -93,8 +94,9 @@ RowMajorMatrix SharedShiftErrors(const MarkerSolution& solution,
     const double shift_px =
         linearization.state.rolling_shutter_s * motion.row * motion.motion.shared_sigma_px_s;
     const auto row = 2 * static_cast<Eigen::Index>(i);
-    errors(row, 0) = errors(row + 1, 1) = shift_px / problem.corner_sigmas_px[i];
+    errors(row, 0) = errors(row + 1, 1) = shift_px;
   }
+  PixelsToResiduals(problem, &errors);
   return errors;
 }
 
@@ -202,7 +204,9 @@ AdjustmentUncertainty UncertaintyOf(const MarkerSolution& solution,
 
 std::vector<CornerResidual> ResidualsOfModel(const Model& model, const MarkerSolution& solution) {
   MarkerState state = MakeState(solution, model);
-  return EvaluateCorners(MakeProblem(solution, WithoutLoss(solution.weights), model, &state));
+  MarkerWeights weights = WithoutLoss(solution.weights);
+  weights.corner_correlation = 0.0;  // each corner by itself
+  return EvaluateCorners(MakeProblem(solution, weights, model, &state));
 }
 
 std::map<int, double> MotionFactorsOf(const Model& model, const MarkerSolution& solution) {

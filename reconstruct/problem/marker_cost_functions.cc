@@ -70,11 +70,11 @@ struct ViewParameters {
 
 using ViewJacobians = std::array<JacobianMap, 5>;
 
-// Sets two rows of the derivatives of one corner's residual with respect to all blocks but the
-// intrinsics, from those with respect to its image point and its position in the camera frame.
-void SetDerivatives(const ViewParameters& view, const CornerObservation& corner, int row,
-                    const Eigen::Matrix2d& by_image, const Eigen::Matrix<double, 2, 3>& by_cam,
-                    ViewJacobians* jacobians) {
+// Sets two rows of the derivatives of one corner's error, in sigmas, with respect to all blocks but
+// the intrinsics, from those of its image point with respect to its position in the camera frame.
+void SetDerivatives(const ViewParameters& view, const CornerObservation& corner, Eigen::Index row,
+                    const Eigen::Matrix<double, 2, 3>& image_by_cam, ViewJacobians* jacobians) {
+  const Eigen::Matrix<double, 2, 3> by_cam = image_by_cam / corner.sigma_px;
   auto& [by_marker, by_pose, by_inset, by_intrinsics, by_shutter] = *jacobians;
   if (by_marker.rows() > 0) {
     by_marker.block<2, 3>(row, 3 * corner.slot) = by_cam * view.rotation_matrix;
@@ -84,9 +84,9 @@ void SetDerivatives(const ViewParameters& view, const CornerObservation& corner,
         by_cam * RotatedFromQuaternion(view.rotation, CornerOfBlock(view.marker, corner.slot));
     by_pose.block<2, 3>(row, 4) = by_cam;
   }
-  if (by_inset.rows() > 0) by_inset.block<2, 1>(row, 0) = by_image * corner.inset_direction;
+  if (by_inset.rows() > 0) by_inset.block<2, 1>(row, 0) = corner.inset_direction / corner.sigma_px;
   if (by_shutter.rows() > 0) {
-    by_shutter.block<2, 1>(row, 0) = by_image * view.Shift(corner).by_shutter_px_s;
+    by_shutter.block<2, 1>(row, 0) = view.Shift(corner).by_shutter_px_s / corner.sigma_px;
   }
 }
 
@@ -110,8 +110,12 @@ Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigm
 }
 
 MarkerViewError::MarkerViewError(CameraModel camera_model, int num_corners_in_block,
-                                 std::vector<CornerObservation> corners, double loss_sigmas)
-    : camera_model_(camera_model), corners_(std::move(corners)), loss_sigmas_(loss_sigmas) {
+                                 std::vector<CornerObservation> corners, double corner_correlation,
+                                 double loss_sigmas)
+    : camera_model_(camera_model),
+      corners_(std::move(corners)),
+      whitening_(CornerWhitening::Of(corner_correlation, static_cast<int>(corners_.size()))),
+      loss_sigmas_(loss_sigmas) {
   set_num_residuals(2 * static_cast<int>(corners_.size()));
   *mutable_parameter_block_sizes() = {3 * num_corners_in_block, 7, 1, NumCameraParams(camera_model),
                                       1};
@@ -123,31 +127,37 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
   const auto map = [&](std::size_t i) { return MapJacobian(*this, jacobians, i); };
   ViewJacobians maps = {map(0), map(1), map(2), map(3), map(4)};
   if (maps[0].rows() > 0) maps[0].setZero();
-  const int num_corners = static_cast<int>(corners_.size());
-  for (int i = 0; i < num_corners; ++i) {
-    const CornerObservation& corner = corners_[i];
+  Eigen::Map<Eigen::VectorXd> in_sigmas(residuals, num_residuals());
+  for (Eigen::Index row = 0; row < in_sigmas.size(); row += 2) {
+    const CornerObservation& corner = corners_[static_cast<std::size_t>(row / 2)];
     const Eigen::Vector3d x_in_cam = view.InCam(corner);
     if (!(x_in_cam.z() > 0)) return false;
     const Eigen::Vector2d ray = x_in_cam.hnormalized();
-    Eigen::Map<Eigen::Vector2d> residual(residuals + 2 * i);
     if (jacobians == nullptr) {
       const Eigen::Vector2d projected =
           ImageFromRay<double, double>(camera_model_, view.intrinsics, ray);
-      residual = RobustResidual((projected + view.OffsetPx(corner)) / corner.sigma_px, loss_sigmas_,
-                                nullptr);
+      in_sigmas.segment<2>(row) = (projected + view.OffsetPx(corner)) / corner.sigma_px;
       continue;
     }
     const RayFunction projection = ImageFromRayWithJacobian(camera_model_, view.intrinsics, ray);
-    Eigen::Matrix2d by_whitened;
-    residual = RobustResidual((projection.value + view.OffsetPx(corner)) / corner.sigma_px,
-                              loss_sigmas_, &by_whitened);
-    const Eigen::Matrix2d by_image = by_whitened / corner.sigma_px;
-    SetDerivatives(view, corner, 2 * i, by_image,
-                   by_image * projection.by_ray * RayByPoint(x_in_cam), &maps);
+    in_sigmas.segment<2>(row) = (projection.value + view.OffsetPx(corner)) / corner.sigma_px;
+    SetDerivatives(view, corner, row, projection.by_ray * RayByPoint(x_in_cam), &maps);
     if (maps[3].rows() > 0) {
-      maps[3].middleRows<2>(2 * i) =
-          by_image *
-          ProjectionByIntrinsics(camera_model_, view.intrinsics, ray).leftCols(maps[3].cols());
+      maps[3].middleRows<2>(row) =
+          ProjectionByIntrinsics(camera_model_, view.intrinsics, ray).leftCols(maps[3].cols()) /
+          corner.sigma_px;
+    }
+  }
+  Whiten(whitening_, in_sigmas);
+  for (JacobianMap& derivatives : maps) Whiten(whitening_, derivatives);
+  if (std::isinf(loss_sigmas_)) return true;
+  for (Eigen::Index row = 0; row < in_sigmas.size(); row += 2) {
+    Eigen::Matrix2d by_whitened;
+    in_sigmas.segment<2>(row) =
+        RobustResidual(in_sigmas.segment<2>(row), loss_sigmas_, &by_whitened);
+    for (JacobianMap& derivatives : maps) {
+      if (derivatives.rows() > 0)
+        derivatives.middleRows<2>(row) = by_whitened * derivatives.middleRows<2>(row);
     }
   }
   return true;

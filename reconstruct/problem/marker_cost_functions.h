@@ -22,6 +22,7 @@
 #include <Eigen/Core>
 
 #include "importer/camera/camera.h"
+#include "reconstruct/problem/corner_whitening.h"
 #include "reconstruct/problem/rolling_shutter.h"
 
 namespace velamap {
@@ -63,12 +64,13 @@ Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigm
                                Eigen::Matrix2d* jacobian);
 
 // Projection + inset + motion while rows are read - observation of all corners of one marker in one
-// image, two residuals for each corner. Blocks: marker, pose, inset, intrinsics, shutter.
-// Evaluation fails for a corner that is not in front of the camera.
+// image, in sigmas and whitened: two residuals for each corner. Blocks: marker, pose, inset,
+// intrinsics, shutter. Evaluation fails for a corner that is not in front of the camera.
 class MarkerViewError : public ceres::CostFunction {
  public:
   MarkerViewError(CameraModel camera_model, int num_corners_in_block,
-                  std::vector<CornerObservation> corners, double loss_sigmas);
+                  std::vector<CornerObservation> corners, double corner_correlation,
+                  double loss_sigmas);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -76,6 +78,7 @@ class MarkerViewError : public ceres::CostFunction {
  private:
   CameraModel camera_model_;
   std::vector<CornerObservation> corners_;
+  CornerWhitening whitening_;
   double loss_sigmas_;
 };
 

@@ -170,7 +170,10 @@ class ProblemBuilder {
     }
   }
 
-  MarkerProblem Take() { return std::move(result_); }
+  MarkerProblem Take() {
+    result_.corner_correlation = weights_.corner_correlation;
+    return std::move(result_);
+  }
 
  private:
   struct SeenCorner {
@@ -235,7 +238,8 @@ class ProblemBuilder {
     }
     result_.corner_residuals.push_back(AddResidual(
         std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),
-                                          std::move(observations), weights_.loss_sigmas),
+                                          std::move(observations), weights_.corner_correlation,
+                                          weights_.loss_sigmas),
         {marker->x_in_world.data(), block.cam_from_world.data(), &state_.inset_px,
          state_.intrinsics.at(image.camera_id).data(), &state_.rolling_shutter_s}));
   }

@@ -20,6 +20,8 @@ namespace velamap {
 // Weights that change from one minimization to the next.
 struct MarkerWeights {
   double corner_factor = 1.0;  // multiplies the sigmas of all corners
+  // Of the errors of two corners of a marker in one image, along the same coordinate.
+  double corner_correlation = 0.0;
   // Multiply those of single markers, which move relative to the others (MotionFactors()).
   std::map<int, double> marker_factors;
   double loss_sigmas = 0.0;
@@ -59,7 +61,8 @@ struct MarkerProblem {
   std::vector<ceres::ResidualBlockId> prior_residuals;  // all others but scale bars
   // One for every pair of residuals of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
-  std::vector<double> corner_sigmas_px;  // by which the residuals were divided, by `corners`
+  std::vector<double> corner_sigmas_px;  // by `corners`
+  double corner_correlation = 0.0;       // see MarkerWeights
 
   // The corners' residuals, then the priors'.
   std::vector<ceres::ResidualBlockId> ResidualsWithoutBars() const {

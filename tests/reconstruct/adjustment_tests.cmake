@@ -24,7 +24,8 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     sizes/runaway_markers_test.cc
     sizes/scale_bar_verdict_test.cc
     sizes/size_deviations_test.cc
-    problem/error_correlation_test.cc
+    correlation/corner_correlation_test.cc
+    correlation/error_correlation_test.cc
     problem/marker_uncertainty_test.cc
     problem/scale_bar_test.cc
     scene_model.cc

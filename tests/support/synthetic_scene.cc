@@ -203,9 +203,14 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene) {
       const double angle = 2 * kPi * unit(generator);
       const double shift_px = is_outlier ? options.outlier_px : 0.0;
       const Eigen::Vector2d shift = shift_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      const auto draw = [&] { return Eigen::Vector2d(normal(generator), normal(generator)); };
+      const double common_share = options.corner_correlation;
+      const Eigen::Vector2d common = common_share > 0
+                                         ? Eigen::Vector2d(std::sqrt(common_share) * draw())
+                                         : Eigen::Vector2d::Zero();
       for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
         corner +=
-            shift + options.corner_sigma_px * Eigen::Vector2d(normal(generator), normal(generator));
+            shift + options.corner_sigma_px * (common + std::sqrt(1.0 - common_share) * draw());
       }
       kept.push_back(marker);
     }

@@ -43,6 +43,8 @@ struct SyntheticNoiseOptions {
   double outlier_rate = 0.0;  // fraction of the detections that are moved by outlier_px as a whole
   double outlier_px = 200.0;
   std::uint32_t seed = 1;
+  // Of the errors of two corners of a detection, along the same coordinate.
+  double corner_correlation = 0.0;
 };
 
 struct SyntheticScene {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/correlation/error_correlation.h"
 #include "reconstruct/sizes/size_deviations.h"
 #include "tests/reconstruct/problem/tiny_scene.h"
 #include "tests/reconstruct/scene_model.h"

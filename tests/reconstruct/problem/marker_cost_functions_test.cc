@@ -83,8 +83,9 @@ class MarkerViewErrorOf : public testing::TestWithParam<CameraModel> {};
 TEST_P(MarkerViewErrorOf, JacobiansAreThoseOfTheResiduals) {
   const PoseManifold pose;
   for (const double loss_sigmas : {kInfinity, 3.0}) {
+    const double correlation = std::isinf(loss_sigmas) ? 0.0 : 0.3;
     for (const std::vector<int>& slots : {std::vector<int>{0, 1, 2, 3}, {2}, {3, 1}}) {
-      const MarkerViewError error(GetParam(), 4, Observations(slots), loss_sigmas);
+      const MarkerViewError error(GetParam(), 4, Observations(slots), correlation, loss_sigmas);
       CheckGradients(error, ViewParameters(GetParam()),
                      {nullptr, &pose, nullptr, nullptr, nullptr});
     }
@@ -101,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(AllModels, MarkerViewErrorOf,
 TEST(MarkerViewError, ResidualIsProjectionPlusInsetAndMotionMinusObservationInSigmas) {
   auto parameters = ViewParameters(CameraModel::kOpenCV);
   const auto observations = Observations({2});
-  const MarkerViewError error(CameraModel::kOpenCV, 4, observations, kInfinity);
+  const MarkerViewError error(CameraModel::kOpenCV, 4, observations, 0.3, kInfinity);
   std::vector<const double*> blocks;
   for (const auto& block : parameters) blocks.push_back(block.data());
   Eigen::Vector2d residual;
@@ -120,7 +121,7 @@ TEST(MarkerViewError, ResidualIsProjectionPlusInsetAndMotionMinusObservationInSi
 TEST(MarkerViewError, CornerBehindTheCameraCannotBeEvaluated) {
   auto parameters = ViewParameters(CameraModel::kPinhole);
   parameters[1][6] = -2.0;
-  const MarkerViewError error(CameraModel::kPinhole, 4, Observations({0}), 3.0);
+  const MarkerViewError error(CameraModel::kPinhole, 4, Observations({0}), 0.0, 3.0);
   std::vector<const double*> blocks;
   for (const auto& block : parameters) blocks.push_back(block.data());
   Eigen::Vector2d residual;

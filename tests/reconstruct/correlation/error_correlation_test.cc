@@ -1,4 +1,4 @@
-#include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/correlation/error_correlation.h"
 
 #include <string>
 #include <vector>
