@@ -200,12 +200,11 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
   const std::string note =
       ReferenceNote(reference, context.part.name, boom.has_value(), centerline.has_value());
   if (!note.empty()) report->notes.push_back(note);
-  if (std::any_of(lines.begin(), lines.end(), [](const LineCurve& line) {
-        return line.Ends().before_m > 0 || line.Ends().after_m > 0;
-      })) {
+  const std::string edges = EdgesBeyondMarkers(lines);
+  if (!edges.empty()) {
     report->notes.push_back(
-        fmt::format("sections of {} go on beyond the outer markers, to the edges of the cloth",
-                    context.part.name));
+        fmt::format("sections of {} go on beyond the outer markers, to the edge of the cloth at {}",
+                    context.part.name, edges));
   }
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return a.height_m < b.height_m; });

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
 namespace velamap {
@@ -240,6 +241,19 @@ HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Ei
   }
   const Interpolation along = MakeInterpolation(ChordLengthParameters(cut));
   return {SpaceCurve{along.degree, along.knots, cut * along.poles_from_points}, ""};
+}
+
+std::string EdgesBeyondMarkers(const std::vector<LineCurve>& lines) {
+  std::vector<const char*> edges;
+  const auto add = [&](double CurveEnds::*length_m, const char* edge) {
+    const bool is_beyond = std::any_of(lines.begin(), lines.end(), [&](const LineCurve& line) {
+      return line.Ends().*length_m > 0;
+    });
+    if (is_beyond) edges.push_back(edge);
+  };
+  add(&CurveEnds::before_m, "luff");
+  add(&CurveEnds::after_m, "leech");
+  return fmt::format("{}", fmt::join(edges, " and "));
 }
 
 }  // namespace velamap

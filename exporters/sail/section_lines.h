@@ -80,4 +80,7 @@ HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Ei
 // Points at CutFractions() of the line, for CutAtHeight.
 Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line);
 
+// The edges to which lines go on beyond their markers: "luff and leech", one of them, or nothing.
+std::string EdgesBeyondMarkers(const std::vector<LineCurve>& lines);
+
 }  // namespace velamap

@@ -47,8 +47,8 @@ TEST(SectionEdges, SectionsOfMarkersWithinTheEdgesAreThoseOfTheWholeCloth) {
   const SectionReport within = SectionsOf(WithinEdges(ExampleSail(17)), options);
   ASSERT_EQ(within.sections.size(), 4u);
   EXPECT_EQ(within.notes, std::vector<std::string>(
-                              {"sections of sail go on beyond the outer markers, to the edges of "
-                               "the cloth"}));
+                              {"sections of sail go on beyond the outer markers, to the edge of "
+                               "the cloth at luff and leech"}));
   for (std::size_t i = 0; i < within.sections.size(); ++i) {
     const Section& a = within.sections[i];
     const Section& b = whole.sections[i];
