@@ -8,10 +8,10 @@
 #include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/sail_lines.h"
+
 namespace velamap {
 namespace {
-
-constexpr double kMaxReach = 0.5;
 
 // The reason why no curve can be fitted to the markers; empty if one can.
 std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& indices,
@@ -63,7 +63,6 @@ void SetOffsets(const LayoutPart& part, const MarkerCenters& centers, LineCurve*
   const int first = line->indices.front(), last = line->indices.back();
   line->luff_offset_m = OffsetToEdge(part.edges.luff, part, line_idx, of_layout.front(), id(first));
   line->leech_offset_m = OffsetToEdge(part.edges.leech, part, line_idx, of_layout.back(), id(last));
-  // As for the surface, an edge so far away is a mistake in the layout.
   const double length_m = (centers.x_m.col(last) - centers.x_m.col(first)).norm();
   for (std::optional<double>* offset_m : {&line->luff_offset_m, &line->leech_offset_m}) {
     if (offset_m->value_or(0.0) > kMaxReach * length_m) offset_m->reset();

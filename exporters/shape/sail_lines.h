@@ -14,6 +14,10 @@
 
 namespace velamap {
 
+// How far beyond the outer markers curves and surfaces go on to the edge of the cloth, as a share
+// of the length that the markers cover. Farther out, a parabola is a guess.
+inline constexpr double kMaxReach = 0.5;
+
 // The marker must be whole.
 Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id);
 

@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface_rows.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kMaxReach = 0.5;  // beyond this, a parabola is a guess
 
 // Whether the surface can continue to an edge of the layout; notes why not.
 bool IsWithinReach(double offset_m, double size_m, const char* edge, SortedInput* sorted) {

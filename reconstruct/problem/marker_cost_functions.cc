@@ -149,7 +149,9 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
     }
   }
   Whiten(whitening_, in_sigmas);
-  for (JacobianMap& derivatives : maps) Whiten(whitening_, derivatives);
+  for (JacobianMap& derivatives : maps) {
+    if (derivatives.rows() > 0) Whiten(whitening_, derivatives);
+  }
   if (std::isinf(loss_sigmas_)) return true;
   for (Eigen::Index row = 0; row < in_sigmas.size(); row += 2) {
     Eigen::Matrix2d by_whitened;

@@ -93,6 +93,7 @@ class ProblemBuilder {
   }
 
   void AddCorners(const CornerErrors& corner_errors) {
+    result_.corner_correlation = weights_.corner_correlation;
     std::unordered_map<ImageId, std::size_t> image_idxs;
     std::vector<const std::vector<double>*> sigmas;
     std::vector<const std::vector<CornerMotion>*> motions;
@@ -170,10 +171,7 @@ class ProblemBuilder {
     }
   }
 
-  MarkerProblem Take() {
-    result_.corner_correlation = weights_.corner_correlation;
-    return std::move(result_);
-  }
+  MarkerProblem Take() { return std::move(result_); }
 
  private:
   struct SeenCorner {

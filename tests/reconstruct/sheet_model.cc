@@ -132,18 +132,23 @@ std::vector<std::pair<Point3DId, TrackElement>> AddOutliers(double fraction, std
   return outliers;
 }
 
-double MaxPointError(const Model& model, const Model& truth) {
+std::vector<double> PointErrors(const Model& model, const Model& truth) {
   std::vector<Eigen::Vector3d> x_in_model, x_in_truth;
   for (const auto& [point3D_id, point] : model.points3D) {
     x_in_model.push_back(point.x_in_world);
     x_in_truth.push_back(truth.points3D.at(point3D_id).x_in_world);
   }
   const Sim3 truth_from_model = EstimateSim3(x_in_model, x_in_truth);
-  double max_error = 0.0;
+  std::vector<double> errors;
   for (std::size_t i = 0; i < x_in_model.size(); ++i) {
-    max_error = std::max(max_error, (truth_from_model * x_in_model[i] - x_in_truth[i]).norm());
+    errors.push_back((truth_from_model * x_in_model[i] - x_in_truth[i]).norm());
   }
-  return max_error;
+  return errors;
+}
+
+double MaxPointError(const Model& model, const Model& truth) {
+  const std::vector<double> errors = PointErrors(model, truth);
+  return *std::max_element(errors.begin(), errors.end());
 }
 
 std::string Bytes(const Model& model) {

@@ -31,7 +31,9 @@ void PerturbSeed(double fraction, std::uint32_t seed, Model* model);
 std::vector<std::pair<Point3DId, TrackElement>> AddOutliers(double fraction, std::uint32_t seed,
                                                             Model* model);
 
-// Largest distance between points of the same id after the best similarity, in units of `truth`.
+// Distances between points of the same id after the best similarity, in units of `truth`.
+std::vector<double> PointErrors(const Model& model, const Model& truth);
+// The largest of them.
 double MaxPointError(const Model& model, const Model& truth);
 
 // All of the model in COLMAP's binary form: equal strings are equal models.

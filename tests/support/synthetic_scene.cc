@@ -205,6 +205,7 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene) {
       const Eigen::Vector2d shift = shift_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       const auto draw = [&] { return Eigen::Vector2d(normal(generator), normal(generator)); };
       const double common_share = options.corner_correlation;
+      // Drawn only where it is used: the other errors of a seed stay what they were.
       const Eigen::Vector2d common = common_share > 0
                                          ? Eigen::Vector2d(std::sqrt(common_share) * draw())
                                          : Eigen::Vector2d::Zero();

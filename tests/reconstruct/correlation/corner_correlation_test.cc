@@ -1,13 +1,14 @@
 #include "reconstruct/correlation/corner_correlation.h"
 
-#include <vector>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "importer/geometry/alignment.h"
+#include "importer/base/statistics.h"
 #include "reconstruct/problem/corner_whitening.h"
 #include "tests/reconstruct/problem/tiny_scene.h"
 #include "tests/reconstruct/scene_model.h"
+#include "tests/reconstruct/sheet_model.h"
 
 namespace velamap {
 namespace {
@@ -79,21 +80,6 @@ TEST(EstimateCornerCorrelation, RoundingErrorsGiveOneWithinItsLimits) {
   EXPECT_LE(correlation, 0.5);
 }
 
-// Mean squared error of all points after the best motion, m^2.
-double MeanSquaredError(const Model& model, const Model& truth) {
-  std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
-  for (const auto& [point3D_id, point] : model.points3D) {
-    x_in_world.push_back(point.x_in_world);
-    x_in_truth.push_back(truth.points3D.at(point3D_id).x_in_world);
-  }
-  const Rigid3 world_from_truth = EstimateRigid3(x_in_truth, x_in_world);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x_in_world.size(); ++i) {
-    sum += (x_in_world[i] - world_from_truth * x_in_truth[i]).squaredNorm();
-  }
-  return sum / static_cast<double>(x_in_world.size());
-}
-
 // As on cloth that flaps. Their shapes are then worth more than their places.
 TEST(CornerCorrelation, MarkersThatMoveAsAWholeAreFoundBetter) {
   const Model truth = MakeSceneModel(ExactScene());
@@ -108,7 +94,7 @@ TEST(CornerCorrelation, MarkersThatMoveAsAWholeAreFoundBetter) {
       MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
       MinimizeMarkerProblem(50, 1e-9, &problem);
       WriteMarkerState(state, &model);
-      (assumed > 0 ? correlated : independent) += MeanSquaredError(model, truth);
+      (assumed > 0 ? correlated : independent) += std::pow(Rms(PointErrors(model, truth)), 2);
     }
   }
   EXPECT_LT(correlated, 0.97 * independent);
