@@ -15,7 +15,8 @@ namespace velamap {
 
 // How far the corner of a marker may be from the saddle point, in cells. Where a light gap is left
 // between the corners of two markers, its middle is a saddle point as well, but not their corner.
-// On photographs of a printed AprilGrid, 99 % of the saddle points are within 0.10 cells of the fit.
+// On photographs of a printed AprilGrid, 99 % of the saddle points are within 0.10 cells of the
+// fit.
 constexpr double kSaddleReachOfFit = 0.15;  // from the fit of the marker's pattern
 constexpr double kSaddleReachOfQuad = 0.5;  // from the outline of the detector
 
