@@ -34,9 +34,11 @@ house_folder(importer/rotation PUBLIC
   rotation_ambiguity rotation_evidence)
 house_folder(importer/lighting PUBLIC
   light_map lighting)
+house_folder(importer/bend PUBLIC
+  bent_square pattern_bend)
 house_folder(importer/pattern PUBLIC
   clipped_pixels fit_equations formation_estimate image_formation known_marker
-  lighting_fit pattern_bend pattern_fit pattern_picture pattern_problem refined_corners)
+  lighting_fit pattern_fit pattern_picture pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
   marker_detector read_again)
 house_folder(importer/track PUBLIC

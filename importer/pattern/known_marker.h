@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/pattern/pattern_bend.h"
+#include "importer/bend/pattern_bend.h"
 
 namespace velamap {
 

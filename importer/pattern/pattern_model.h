@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "importer/bend/pattern_bend.h"
 #include "importer/geometry/quad.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/lanes/blurred_cells.h"
 #include "importer/pattern/image_formation.h"
-#include "importer/pattern/pattern_bend.h"
 
 namespace velamap {
 

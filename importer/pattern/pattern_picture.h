@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "importer/geometry/unit_square_map.h"
+#include "importer/bend/bent_square.h"
 #include "importer/lanes/blurred_cells.h"
 #include "importer/pattern/pattern_model.h"
 
@@ -43,17 +43,15 @@ class PatternPicture {
         parameters_(parameters) {
     QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
-    square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
-    PatternBend::Coefficients bends_px = model.lens_bend.coefficients_px;
-    num_rounds_ = bends_px.isZero(0) ? 2 : 3;
-    bends_px.col(0) += parameters.segment<2>(P::kBendU);
-    bends_px.col(3) += parameters.segment<2>(P::kBendV);
-    bends_px_ = bends_px.cast<float>();
+    PatternBend bend = model.lens_bend;
+    bend.coefficients_px.col(0) += parameters.segment<2>(P::kBendU);
+    bend.coefficients_px.col(3) += parameters.segment<2>(P::kBendV);
+    square_ = BentSquare(quad, bend, model.lens_bend.coefficients_px.isZero(0) ? 2 : 3);
   }
 
   // Whether the model covers a place, inside or near the black square; -1 for yes.
   Ints Covers(Floats x, Floats y) const {
-    const Place place = ToSquare(x, y);
+    const SquarePlace place = square_.At(x, y);
     const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
     return (Min(place.u, place.v) > -margin) & (Max(place.u, place.v) < 1.0f + margin);
   }
@@ -61,7 +59,7 @@ class PatternPicture {
   // Whether a place is within `reach_px` of an edge between a dark and a light cell, or of the end
   // of the quiet zone; -1 for yes.
   Ints IsNearEdge(Floats x, Floats y, float reach_px) const {
-    const Place place = ToSquare(x, y);
+    const SquarePlace place = square_.At(x, y);
     const auto n = static_cast<float>(model_.num_cells);
     const Floats cells_u = n * Sqrt(place.u_by_x * place.u_by_x + place.u_by_y * place.u_by_y);
     const Floats cells_v = n * Sqrt(place.v_by_x * place.v_by_x + place.v_by_y * place.v_by_y);
@@ -82,7 +80,7 @@ class PatternPicture {
   // blur of straight edges does.
   Ints IsAtOutlineCorner(Floats x, Floats y, float reach_px = 2.0f,
                          float reach_cells = 0.4f) const {
-    const Place place = ToSquare(x, y);
+    const SquarePlace place = square_.At(x, y);
     const auto n = static_cast<float>(model_.num_cells);
     const Floats u = n * place.u, v = n * place.v;
     const Floats corner_u = __builtin_convertvector(Floor(u + 0.5f), Floats);
@@ -105,14 +103,14 @@ class PatternPicture {
 
   // Whether a place is further inside the black square than half a cell; -1 for yes.
   Ints IsAmongInnerCells(Floats x, Floats y) const {
-    const Place place = ToSquare(x, y);
+    const SquarePlace place = square_.At(x, y);
     const auto border = static_cast<float>(0.5 / model_.num_cells);
     return (Min(place.u, place.v) > border) & (Max(place.u, place.v) < 1.0f - border);
   }
 
   void At(Floats x, Floats y, PatternPixels* pixels) const {
     const Eigen::Matrix<float, P::kCount, 1> p = parameters_.cast<float>();
-    const Place place = WithBentSlopes(ToSquare(x, y));
+    const SquarePlace place = square_.WithBentSlopes(square_.At(x, y));
     const auto n = static_cast<float>(model_.num_cells);
     const Floats u_by_x = n * place.u_by_x, u_by_y = n * place.u_by_y;  // cells/px
     const Floats v_by_x = n * place.v_by_x, v_by_y = n * place.v_by_y;
@@ -182,11 +180,6 @@ class PatternPicture {
   // How far outside the black square pixels are used.
   static constexpr double kMarginInCells = 0.75;
 
-  // A place in the unit square and the derivatives of u and v by those in the image, 1/px.
-  struct Place {
-    Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
-  };
-
   // Moves every edge towards the light side by the ink's spread and by a fraction of its blur, to
   // second order. `blur_u`, `blur_v`: in cells. The derivatives stay as they are, which is enough
   // for a step.
@@ -208,7 +201,7 @@ class PatternPicture {
 
   // A bend also changes how many cells the blur reaches, and makes the view oblique. Adds this to
   // the derivatives by the bends. `blur_u`, `blur_v`: in cells.
-  void AddStretch(const Place& place, Floats blur_u, Floats blur_v, Floats contrast,
+  void AddStretch(const SquarePlace& place, Floats blur_u, Floats blur_v, Floats contrast,
                   const Blended& pattern, FloatsArray<PatternParameters::kCount>* jacobian) const {
     const auto v_by_u = static_cast<float>(parameters_[P::kBlurV] / parameters_[P::kBlurU]);
     const Floats slope_u = contrast * (8.0f * place.u - 4.0f) * blur_u;
@@ -265,64 +258,6 @@ class PatternPicture {
            std::abs(v + margin[2]) < reach_v || std::abs(v - n - margin[3]) < reach_v;
   }
 
-  // Zero at both ends of a side, one in its middle.
-  static Floats Hump(Floats place) { return 4.0f * place * (1.0f - place); }
-
-  Place ToSquare(Floats x, Floats y) const {
-    const Eigen::Matrix3f& m = square_from_image_;
-    const Floats scale = 1.0f / (m(2, 0) * x + m(2, 1) * y + m(2, 2));
-    const Floats flat_u = scale * (m(0, 0) * x + m(0, 1) * y + m(0, 2));
-    const Floats flat_v = scale * (m(1, 0) * x + m(1, 1) * y + m(1, 2));
-    Place place{flat_u,
-                flat_v,
-                scale * (m(0, 0) - flat_u * m(2, 0)),
-                scale * (m(0, 1) - flat_u * m(2, 1)),
-                scale * (m(1, 0) - flat_v * m(2, 0)),
-                scale * (m(1, 1) - flat_v * m(2, 1))};
-    const Eigen::Matrix<float, 2, 6>& b = bends_px_;
-    for (int i = 0; i < num_rounds_; ++i) {
-      const Floats hump_u = Hump(place.u), hump_v = Hump(place.v);
-      const Floats tilt_u = 2.0f * place.u - 1.0f, tilt_v = 2.0f * place.v - 1.0f;
-      const auto bend = [&](int axis) {
-        return hump_u * (b(axis, 0) + tilt_v * b(axis, 1) + tilt_u * b(axis, 2)) +
-               hump_v * (b(axis, 3) + tilt_u * b(axis, 4) + tilt_v * b(axis, 5));
-      };
-      const Floats bend_x = bend(0), bend_y = bend(1);
-      place.u = flat_u - place.u_by_x * bend_x - place.u_by_y * bend_y;
-      place.v = flat_v - place.v_by_x * bend_x - place.v_by_y * bend_y;
-    }
-    return place;
-  }
-
-  // A bend compresses one end of a side and stretches the other, and with them the cells that the
-  // blur reaches. `flat` has the slopes of the flat marker.
-  Place WithBentSlopes(const Place& flat) const {
-    const Eigen::Matrix<float, 2, 6>& b = bends_px_;
-    const Floats hump_u = Hump(flat.u), hump_v = Hump(flat.v);
-    const Floats tilt_u = 2.0f * flat.u - 1.0f, tilt_v = 2.0f * flat.v - 1.0f;
-    const auto by_u = [&](int axis) {
-      return 2.0f * (hump_u * b(axis, 2) + hump_v * b(axis, 4)) -
-             4.0f * tilt_u * (b(axis, 0) + tilt_v * b(axis, 1) + tilt_u * b(axis, 2));
-    };
-    const auto by_v = [&](int axis) {
-      return 2.0f * (hump_u * b(axis, 1) + hump_v * b(axis, 5)) -
-             4.0f * tilt_v * (b(axis, 3) + tilt_u * b(axis, 4) + tilt_v * b(axis, 5));
-    };
-    const Floats x_by_u = by_u(0), y_by_u = by_u(1), x_by_v = by_v(0), y_by_v = by_v(1);
-    // The place on the flat marker by that on the bent one, and its inverse.
-    const Floats uu = 1.0f + flat.u_by_x * x_by_u + flat.u_by_y * y_by_u;
-    const Floats uv = flat.u_by_x * x_by_v + flat.u_by_y * y_by_v;
-    const Floats vu = flat.v_by_x * x_by_u + flat.v_by_y * y_by_u;
-    const Floats vv = 1.0f + flat.v_by_x * x_by_v + flat.v_by_y * y_by_v;
-    const Floats by_determinant = 1.0f / (uu * vv - uv * vu);
-    return {flat.u,
-            flat.v,
-            by_determinant * (vv * flat.u_by_x - uv * flat.v_by_x),
-            by_determinant * (vv * flat.u_by_y - uv * flat.v_by_y),
-            by_determinant * (uu * flat.v_by_x - vu * flat.u_by_x),
-            by_determinant * (uu * flat.v_by_y - vu * flat.u_by_y)};
-  }
-
   Blended BlendAll(const CellWeights& u, const CellWeights& v, Floats correlation_px,
                    Floats* inner_value, BlendedSurroundings* surroundings) const {
     const int n = model_.num_cells;
@@ -343,9 +278,7 @@ class PatternPicture {
   const ToneCurve& tone_;
   float direct_share_;  // of the light, which the halo does not scatter
   PatternParameters::Vector parameters_;
-  Eigen::Matrix3f square_from_image_;
-  Eigen::Matrix<float, 2, 6> bends_px_;  // of cloth and lens, as in PatternBend
-  int num_rounds_;                       // until the bends are undone to 0.01 px
+  BentSquare square_;  // bent by cloth and lens
 };
 
 }  // namespace velamap

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "importer/pattern/pattern_bend.h"
+#include "importer/bend/pattern_bend.h"
 #include "importer/refine/corner_refinement.h"
 
 namespace velamap {

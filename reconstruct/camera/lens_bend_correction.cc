@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "importer/pattern/pattern_bend.h"
+#include "importer/bend/pattern_bend.h"
 
 namespace velamap {
 

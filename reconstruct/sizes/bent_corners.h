@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "importer/pattern/pattern_bend.h"
+#include "importer/bend/pattern_bend.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_state.h"

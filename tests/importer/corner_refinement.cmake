@@ -4,7 +4,7 @@ velamap_test(
   SOURCES
     refine/corner_refinement_test.cc
     refine/side_shift_test.cc
-    pattern/pattern_bend_test.cc
+    bend/pattern_bend_test.cc
     pattern/wide_blur_test.cc
     refine/read_again_test.cc
     refine/edge_fit_test.cc

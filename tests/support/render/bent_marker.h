@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "importer/bend/pattern_bend.h"
 #include "importer/camera/camera.h"
 #include "importer/geometry/quad.h"
 #include "importer/geometry/rigid3.h"
-#include "importer/pattern/pattern_bend.h"
 
 namespace velamap {
 

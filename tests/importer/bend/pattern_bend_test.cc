@@ -1,4 +1,4 @@
-#include "importer/pattern/pattern_bend.h"
+#include "importer/bend/pattern_bend.h"
 
 #include <random>
 
