@@ -6,30 +6,18 @@
 #include <optional>
 #include <utility>
 
+#include "reconstruct/registration/frame_window.h"
 #include "reconstruct/registration/motion_field.h"
-#include "reconstruct/registration/repeated_frames.h"
-#include "reconstruct/registration/track_gaps.h"
 #include "reconstruct/registration/track_smoothing.h"
 
 namespace velamap {
 namespace {
 
-// Over a longer time, a hand-held camera may have reversed its motion.
-constexpr double kLongestStep_s = 0.15;
 // Number of frames before and after a frame that contribute to the motion of its corners. More
 // distant ones would add noise, or motion that is unrelated to that in this frame.
 constexpr std::size_t kReach = 8;
 
 using RowMajorTracks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-struct TimedFrame {
-  const FrameDetections* detections = nullptr;
-  const MarkerPlaces* places = nullptr;  // also of markers that the frame lacks (track_gaps.h)
-  double time_s = 0.0;                   // after the frame whose corners' motions are sought
-};
-
-// That frame and those around it, in the order of time.
-using FrameWindow = std::vector<TimedFrame>;
 
 // The weights of places at the same times are the same for all markers of a frame.
 class PlaceWeights {
@@ -200,60 +188,6 @@ std::vector<CornerMotion> MotionsOf(const FrameMotion& frame, double own_varianc
     }
   }
   return motions;
-}
-
-// One exposure of the sensor: the frame that shows it, and those that repeat that frame.
-struct Exposure {
-  std::vector<const DatabaseImage*> frames;
-  TimedPlaces track;  // of the first of the frames
-};
-
-// Whether the second frame follows the first so soon that one path of a marker passes through both.
-bool AreNear(const DatabaseImage& frame, const DatabaseImage& next) {
-  const double step_s = *next.detections.time_s - *frame.detections.time_s;
-  return step_s > 0 && step_s <= kLongestStep_s && frame.camera_id == next.camera_id;
-}
-
-// In the order of time. Photographs are left out.
-std::vector<Exposure> ExposuresOf(const std::vector<DatabaseImage>& images) {
-  std::vector<const DatabaseImage*> frames;
-  for (const DatabaseImage& image : images) {
-    if (image.detections.time_s) frames.push_back(&image);
-  }
-  std::sort(frames.begin(), frames.end(), [](const DatabaseImage* a, const DatabaseImage* b) {
-    return *a->detections.time_s < *b->detections.time_s;
-  });
-  const std::vector<bool> is_repeated = FindRepeatedFrames(frames);
-  std::vector<Exposure> exposures;
-  std::vector<TimedPlaces> tracks;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!is_repeated[i]) {
-      if (i > 0) tracks.back().is_near_next = AreNear(*exposures.back().frames.front(), *frames[i]);
-      exposures.emplace_back();
-      tracks.push_back(PlacesOf(frames[i]->detections));
-    }
-    exposures.back().frames.push_back(frames[i]);
-  }
-  FillGaps(&tracks);
-  for (std::size_t i = 0; i < exposures.size(); ++i) exposures[i].track = std::move(tracks[i]);
-  return exposures;
-}
-
-// The frames within `reach` exposures of exposure `idx`, without any that is not near the next.
-FrameWindow WindowAround(const std::vector<Exposure>& exposures, std::size_t idx,
-                         std::size_t reach) {
-  std::size_t begin = idx, end = idx + 1;
-  while (begin > 0 && begin + reach > idx && exposures[begin - 1].track.is_near_next) --begin;
-  while (end < exposures.size() && end <= idx + reach && exposures[end - 1].track.is_near_next) {
-    ++end;
-  }
-  FrameWindow window;
-  for (std::size_t i = begin; i < end; ++i) {
-    const TimedPlaces& track = exposures[i].track;
-    window.push_back({&exposures[i].frames.front()->detections, &track.places,
-                      track.time_s - exposures[idx].track.time_s});
-  }
-  return window;
 }
 
 // The tracks of the markers that all frames of a window show. Returns nothing if the frame itself
