@@ -104,6 +104,8 @@ house_folder(exporters/surface PUBLIC
   surface surface_attempt surface_csv surface_input)
 house_folder(exporters/cloth PUBLIC
   cloth_places surface_sigma)
+house_folder(exporters/curve PUBLIC
+  section_spline space_curve)
 house_folder(exporters/sail PUBLIC
   sail_metrics sail_shape section section_writer)
 house_folder(exporters/freeform PUBLIC

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "exporters/sail/section_spline.h"
+#include "exporters/curve/section_spline.h"
 
 namespace velamap {
 namespace {

@@ -268,7 +268,8 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
       continue;
     }
     PartContext context{part, centers, {*up.direction, {}, 1}, {}};
-    context.curves = FitPartLines(part, centers, *up.direction, options.min_markers);
+    context.curves = FitPartLines(part, centers, FindSideEdges(shape, part, *up.direction),
+                                  *up.direction, options.min_markers);
     std::optional<MarkerPair> boom, centerline;
     if (!context.curves.lines.empty()) {
       context.axes = AxesOf(context.curves.lines, *up.direction);

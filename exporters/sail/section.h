@@ -24,7 +24,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/sail/section_spline.h"
+#include "exporters/curve/section_spline.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
 #include "importer/base/option.h"

@@ -40,33 +40,22 @@ std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& ind
   return "";
 }
 
-// The distance along a line from its outer marker to the edge of the cloth; nothing where the
-// layout does not give it, and where a marker of the layout is missing in between.
-std::optional<double> OffsetToEdge(const ClothEdge& edge, const LayoutPart& part,
-                                   std::size_t line_idx, int marker_id_of_layout, int marker_id) {
-  if (marker_id != marker_id_of_layout || !edge.points.empty()) return std::nullopt;
-  if (!edge.line.empty()) {
-    const auto along = std::find_if(part.vertical.begin(), part.vertical.end(),
-                                    [&](const MarkerLine& line) { return line.name == edge.line; });
-    if (along == part.vertical.end()) return std::nullopt;
-    const std::vector<int>& ids = along->marker_ids;
-    if (std::find(ids.begin(), ids.end(), marker_id) == ids.end()) return std::nullopt;
-    return edge.OffsetOfLine(0).value_or(0.0);
-  }
-  return edge.OffsetOfLine(line_idx);
-}
-
-void SetOffsets(const LayoutPart& part, const MarkerCenters& centers, LineCurve* line) {
+// How far the line goes on to luff and leech, if these are not too far.
+void SetOffsets(const LayoutPart& part, const MarkerCenters& centers, const SideEdges& edges,
+                const Eigen::Vector3d& up, LineCurve* line) {
   const auto line_idx = static_cast<std::size_t>(line->place_in_layout);
   const std::vector<int>& of_layout = part.horizontal[line_idx].marker_ids;
+  const double longest_m = kMaxReach * ChordOf(line->fit.curve).norm();
   const auto id = [&](int index) { return centers.marker_ids[static_cast<std::size_t>(index)]; };
-  const int first = line->indices.front(), last = line->indices.back();
-  line->luff_offset_m = OffsetToEdge(part.edges.luff, part, line_idx, of_layout.front(), id(first));
-  line->leech_offset_m = OffsetToEdge(part.edges.leech, part, line_idx, of_layout.back(), id(last));
-  const double length_m = (centers.x_m.col(last) - centers.x_m.col(first)).norm();
-  for (std::optional<double>* offset_m : {&line->luff_offset_m, &line->leech_offset_m}) {
-    if (offset_m->value_or(0.0) > kMaxReach * length_m) offset_m->reset();
-  }
+  const auto offset_m = [&](const SideEdge& edge, bool is_at_outer_marker, double parameter) {
+    const CurveJet jet = EvaluateCurveJet(line->fit.curve, parameter);
+    const Eigen::Vector3d outwards = (parameter > 0 ? 1.0 : -1.0) * jet.x_t.normalized();
+    const std::optional<double> distance_m =
+        DistanceToEdge(edge, {line_idx, is_at_outer_marker, jet.x, outwards}, up);
+    return distance_m.value_or(0.0) <= longest_m ? distance_m : std::nullopt;
+  };
+  line->luff_offset_m = offset_m(edges.luff, id(line->indices.front()) == of_layout.front(), 0.0);
+  line->leech_offset_m = offset_m(edges.leech, id(line->indices.back()) == of_layout.back(), 1.0);
 }
 
 // Removes lines that run opposite to the majority, or to the lowest line in a tie.
@@ -89,22 +78,6 @@ void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
     }
   }
   curves->lines = std::move(kept);
-}
-
-// The parameter at which a curve, which starts below the height and ends above it, reaches it.
-double ParameterAtHeight(const SpaceCurve& curve, const Eigen::Vector3d& up, double height_m) {
-  constexpr int kMaxSteps = 60;
-  double low = 0.0, high = 1.0, t = 0.5;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    const CurveJet jet = EvaluateCurveJet(curve, t);
-    const double excess_m = up.dot(jet.x) - height_m;
-    (excess_m < 0 ? low : high) = t;
-    const double newton = t - excess_m / up.dot(jet.x_t);
-    const double next = newton >= low && newton <= high ? newton : 0.5 * (low + high);
-    if (std::abs(next - t) < 1e-13) return next;
-    t = next;
-  }
-  return t;
 }
 
 // Cumulative mean distances between neighbouring lines, normalized to 1.
@@ -134,7 +107,6 @@ void SmoothTogether(bool with_sigma, const MarkerCenters& centers, std::vector<L
   for (std::size_t i = 0; i < alike.size(); ++i) {
     alike[i]->smoothing = smoothing;
     alike[i]->fit = FitCurve(data[i], smoothing);
-    alike[i]->curve = ExtendCurve(alike[i]->fit.curve, alike[i]->Ends());
   }
 }
 
@@ -167,7 +139,7 @@ SpaceCurve LineCurve::Refit(const MarkerCenters& centers) const {
 }
 
 PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
-                        const Eigen::Vector3d& up, int min_markers) {
+                        const SideEdges& edges, const Eigen::Vector3d& up, int min_markers) {
   PartCurves curves;
   for (const MarkerLine& line : part.horizontal) {
     LineCurve curve;
@@ -195,10 +167,13 @@ PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
       curves.missing.push_back({line.name, problem});
       continue;
     }
-    SetOffsets(part, centers, &curve);
     curves.lines.push_back(std::move(curve));
   }
   for (const bool with_sigma : {false, true}) SmoothTogether(with_sigma, centers, &curves.lines);
+  for (LineCurve& line : curves.lines) {
+    SetOffsets(part, centers, edges, up, &line);
+    line.curve = ExtendCurve(line.fit.curve, line.Ends());
+  }
   std::stable_sort(curves.lines.begin(), curves.lines.end(),
                    [&](const LineCurve& a, const LineCurve& b) {
                      return MiddleHeight(a.fit.curve, up) < MiddleHeight(b.fit.curve, up);

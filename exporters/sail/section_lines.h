@@ -8,7 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "exporters/sail/section_spline.h"
+#include "exporters/curve/section_spline.h"
+#include "exporters/sail/section_edges.h"
 #include "importer/layout/layout.h"
 
 namespace velamap {
@@ -31,7 +32,7 @@ struct LineCurve {
   std::vector<int> indices;  // into the MarkerCenters, from luff to leech
   double smoothing = 0.0;
   CurveFit fit;  // between the outer markers
-  // From there to the edges of the cloth, where the layout gives the distances.
+  // From there to the edges of the cloth, where the layout gives them.
   std::optional<double> luff_offset_m{}, leech_offset_m{};
   SpaceCurve curve;  // from edge to edge
 
@@ -55,7 +56,7 @@ struct PartCurves {
 // Fits the lines of the part. Leaves out lines with too few markers, with markers in the same place
 // or out of order along the chord, lines that run opposite to the others, and lines that cross.
 PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
-                        const Eigen::Vector3d& up, int min_markers);
+                        const SideEdges& edges, const Eigen::Vector3d& up, int min_markers);
 
 // Leaves out crossing lines, the one with the most crossings first, until none cross. Of a pair
 // that crosses no other line, nothing says which one is wrong, and both are left out.

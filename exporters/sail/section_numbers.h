@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "exporters/curve/section_spline.h"
 #include "exporters/sail/section_lines.h"
-#include "exporters/sail/section_spline.h"
 #include "importer/layout/layout.h"
 
 namespace velamap {

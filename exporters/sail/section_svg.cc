@@ -44,8 +44,8 @@ std::vector<std::string> NumbersText(const Section& section) {
   const std::string draft =
       section.draft_position ? WithSigma(*section.draft_position, 100, 1) + " %" : "none";
   return {
-      fmt::format("chord {} mm at {:.0f} mm", WithSigma(section.chord_m, kMmPerM, 1),
-                  kMmPerM * section.height_m),
+      fmt::format("chord {} mm at {} mm", WithSigma(section.chord_m, kMmPerM, 1),
+                  FixedText(kMmPerM * section.height_m, 0)),
       fmt::format("camber {} %, draft {}", WithSigma(section.camber, 100, 2), draft),
       fmt::format("entry {}°, exit {}°", WithSigma(section.entry_angle_deg, 1, 1),
                   WithSigma(section.exit_angle_deg, 1, 1)),

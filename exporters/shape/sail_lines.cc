@@ -56,6 +56,26 @@ Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id) {
   return *marker->x_in_shape_m[0];
 }
 
+std::vector<Eigen::Vector3d> WholePoints(const MarkerShape& shape,
+                                         const std::vector<CornerId>& points) {
+  std::vector<Eigen::Vector3d> points_m;
+  for (const CornerId& point : points) {
+    const ShapeMarker* marker = FindWholeMarker(shape, point.marker_id);
+    if (marker == nullptr) continue;
+    points_m.push_back(*marker->x_in_shape_m[static_cast<std::size_t>(point.corner)]);
+  }
+  return points_m;
+}
+
+std::vector<CornerId> PointsAlongSide(const LayoutPart& part, const ClothEdge& edge) {
+  std::vector<CornerId> points = edge.points;
+  for (const MarkerLine& line : part.vertical) {
+    if (line.name != edge.line) continue;
+    for (const int id : line.marker_ids) points.push_back({id, 0});
+  }
+  return points;
+}
+
 std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part) {
   std::vector<int> ids;
   std::set<int> seen;

@@ -21,6 +21,13 @@ inline constexpr double kMaxReach = 0.5;
 // The marker must be whole.
 Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id);
 
+// Those of the points that belong to whole markers, in order, in the shape frame, m.
+std::vector<Eigen::Vector3d> WholePoints(const MarkerShape& shape,
+                                         const std::vector<CornerId>& points);
+
+// The points along a luff or leech that the layout names, by a vertical line or one by one.
+std::vector<CornerId> PointsAlongSide(const LayoutPart& part, const ClothEdge& edge);
+
 // Each id of the part once, in the order of the layout, lines first.
 std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part);
 

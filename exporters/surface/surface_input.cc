@@ -67,28 +67,14 @@ std::vector<EdgeOfPlaces> EdgesOfPlaces(const LayoutPart& part, SurfaceInput* in
           {"head", false, part.edges.head, edges.head, input->head_note}};
 }
 
-// The points along an edge that the layout names, by its vertical line or one by one.
-std::vector<CornerId> NamedPoints(const EdgeOfPlaces& edge, const LayoutPart& part) {
-  std::vector<CornerId> points = edge.in_layout.points;
-  for (const MarkerLine& line : part.vertical) {
-    if (!edge.is_side || line.name != edge.in_layout.line) continue;
-    for (const int id : line.marker_ids) points.push_back({id, 0});
-  }
-  return points;
-}
-
 // Sets the points of the edge that the shape has; fewer than two are no edge, which is noted.
 // Markers at points where the cloth ends are removed from `others`.
 void SetPoints(const MarkerShape& shape, const LayoutPart& part, const EdgeOfPlaces& places,
                std::set<int>* others) {
-  const std::vector<CornerId> named = NamedPoints(places, part);
+  const std::vector<CornerId> named =
+      places.is_side ? PointsAlongSide(part, places.in_layout) : places.in_layout.points;
   if (named.empty()) return;
-  std::vector<Eigen::Vector3d> points_m;
-  for (const CornerId& point : named) {
-    const ShapeMarker* marker = FindWholeMarker(shape, point.marker_id);
-    if (marker == nullptr) continue;
-    points_m.push_back(*marker->x_in_shape_m[static_cast<std::size_t>(point.corner)]);
-  }
+  const std::vector<Eigen::Vector3d> points_m = WholePoints(shape, named);
   if (points_m.size() < 2) {
     const std::string& line = places.in_layout.line;
     places.note =

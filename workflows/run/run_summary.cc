@@ -81,8 +81,9 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
 }
 
 std::string SectionText(const Section& section) {
-  std::string text = fmt::format("{} at {:.2f} m: camber {} %", section.name, section.height_m,
-                                 FixedText(100.0 * section.camber.value, 1));
+  std::string text =
+      fmt::format("{} at {} m: camber {} %", section.name, FixedText(section.height_m, 2),
+                  FixedText(100.0 * section.camber.value, 1));
   if (section.draft_position) {
     text += fmt::format(" with the draft at {:.0f} %", 100.0 * section.draft_position->value);
   }

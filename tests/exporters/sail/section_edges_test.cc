@@ -91,6 +91,51 @@ TEST(SectionEdges, AnEdgeOfMarkersIsReachedByThem) {
   EXPECT_NEAR(SectionsOf(sail).sections[0].chord_m.value, chord_m + 0.05 * std::cos(0.31), 1e-3);
 }
 
+// Other markers stand on luff and leech between the lines, as markers do that are glued there
+// later.
+TEST(SectionEdges, SectionsGoOnToAnEdgeOfPoints) {
+  const Sail whole = ExampleSail(17);
+  Sail sail = WithinEdges(whole);
+  LayoutPart& part = sail.layout.parts.front();
+  part.edges = {};
+  const auto add_points = [&](double share, bool is_luff, ClothEdge* edge) {
+    const auto x_m = [&](std::size_t line) -> Eigen::Vector3d {
+      const std::vector<int>& ids = whole.layout.parts.front().horizontal[line].marker_ids;
+      return *FindWholeMarker(whole.shape, is_luff ? ids.front() : ids.back())->x_in_shape_m[0];
+    };
+    const int id = 900 + static_cast<int>(sail.shape.markers.size());
+    ShapeMarker marker = sail.shape.markers.front();
+    const Eigen::Vector3d shift = (1 - share) * x_m(0) + share * x_m(2) - *marker.x_in_shape_m[0];
+    marker.marker_id = id;
+    for (auto& point : marker.x_in_shape_m) *point += shift;
+    sail.shape.markers.push_back(marker);
+    part.marker_ids.push_back(id);
+    edge->points.push_back({id, 0});
+  };
+  for (const double share : {1.0, 0.7, 0.3, 0.0}) add_points(share, true, &part.edges.luff);
+  for (const double share : {0.0, 0.3, 0.7, 1.0}) add_points(share, false, &part.edges.leech);
+  const SectionReport expected = SectionsOf(whole), report = SectionsOf(sail);
+  ASSERT_EQ(report.sections.size(), 3u);
+  for (const std::size_t i : {0, 2}) {  // the lines between which the points lie in a line
+    const Section &a = report.sections[i], &b = expected.sections[i];
+    EXPECT_TRUE(a.reaches_luff && a.reaches_leech);
+    EXPECT_NEAR(a.chord_m.value, b.chord_m.value, 2e-3);
+    EXPECT_NEAR(a.camber.value, b.camber.value, 2e-4);
+  }
+}
+
+// A luff that ends below the highest line.
+TEST(SectionEdges, AnEdgeThatDoesNotPassALineIsNotReached) {
+  Sail sail = WithinEdges(ExampleSail());
+  LayoutPart& part = sail.layout.parts.front();
+  part.edges = {};
+  part.edges.luff.points = {{part.horizontal[0].marker_ids.front(), 0},
+                            {part.horizontal[1].marker_ids.front(), 0}};
+  const SectionReport report = SectionsOf(sail);
+  EXPECT_TRUE(report.sections[0].reaches_luff && report.sections[1].reaches_luff);
+  EXPECT_FALSE(report.sections[2].reaches_luff);
+}
+
 TEST(SectionEdges, AnEdgeFartherThanHalfOfTheLineIsNotReached) {
   Sail sail = ExampleSail();
   sail.layout.parts.front().edges.leech.offsets_m = {2.0};

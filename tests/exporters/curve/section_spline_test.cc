@@ -1,4 +1,4 @@
-#include "exporters/sail/section_spline.h"
+#include "exporters/curve/section_spline.h"
 
 #include <cmath>
 
