@@ -52,7 +52,7 @@ house_folder(importer PUBLIC
 house_folder(reconstruct/geometry PUBLIC
   camera_conversion covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC
-  adjustment_uncertainty calibration_evidence gauge model model_io reprojection turned_model
+  adjustment_uncertainty calibration_evidence gauge model model_io moved_views reprojection turned_model
   weak_geometry)
 house_folder(reconstruct/camera PUBLIC
   camera_steadiness focal_evidence lens_bend_correction)

@@ -29,6 +29,7 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 #include "reconstruct/problem/rolling_shutter.h"
 #include "reconstruct/sizes/marker_sizes.h"
+#include "reconstruct/sizes/moving_markers.h"
 #include "reconstruct/sizes/runaway_markers.h"
 #include "reconstruct/sizes/scale_bar_verdict.h"
 
@@ -315,8 +316,10 @@ int MarkerAdjuster::ReviseCorners() {
   const std::set<Key> before = keys_of(summary_.removed);
   std::vector<RemovedObservation> removed;
   Model candidate = WithRemovedCorners(&removed);
-  RemoveOutliers(ResidualsOfModel(candidate, solution_), solution_.options.outlier_sigmas,
-                 &candidate, &removed);
+  const double max_sigmas = solution_.options.outlier_sigmas;
+  RemoveOutliers(WithoutMovedViews(ResidualsOfModel(candidate, solution_), max_sigmas, candidate,
+                                   solution_.corner_errors->motions),
+                 max_sigmas, &candidate, &removed);
   const std::set<Key> after = keys_of(removed);
   std::vector<Key> changes;
   std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),

@@ -210,6 +210,7 @@ void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   AdjustFinally(kFine, global);
   if (DropContradictions(layout, global)) AdjustFinally(kFine, global);
   DropUnsupported(global);
+  if (global->is_video) MarkMovedViews(problem, &global->solution);
 }
 
 int ChooseCentralFrame(const GlobalRegistration& global) {

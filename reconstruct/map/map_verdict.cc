@@ -11,6 +11,7 @@
 #include "importer/geometry/quad.h"
 #include "importer/geometry/symmetric_eigen.h"
 #include "reconstruct/map/map_refinement.h"
+#include "reconstruct/model/moved_views.h"
 
 namespace velamap {
 namespace {
@@ -22,18 +23,17 @@ double SigmaFromMedian(double median_rms, double median_of_chi_square) {
 
 std::string Px(double value) { return fmt::format("{:.{}f} px", value, value < 10 ? 1 : 0); }
 
-// Distances of the corners from their projections, px.
-std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
-                                               const MapSolution& solution,
-                                               const MapObservation& observation) {
+// From the corners to their projections, px.
+std::array<Eigen::Vector2d, kNumCorners> CornerErrorsPx(const MapProblem& problem,
+                                                        const MapSolution& solution,
+                                                        const MapObservation& observation) {
   const Rigid3& pose = *solution.Pose(observation.frame_idx);
   const auto corners = CornersInShape(problem.Marker(observation.marker_idx),
                                       solution.Places(observation.marker_idx).front());
-  std::array<double, kNumCorners> errors_px{};
+  std::array<Eigen::Vector2d, kNumCorners> errors_px;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     errors_px[i] =
-        (observation.px_from_ray[i] * ((pose * corners[i]).hnormalized() - observation.rays[i]))
-            .norm();
+        observation.px_from_ray[i] * ((pose * corners[i]).hnormalized() - observation.rays[i]);
   }
   return errors_px;
 }
@@ -180,6 +180,25 @@ void MarkFinalInliers(const MapProblem& problem, const MapNoise& noise, MapSolut
   }
 }
 
+void MarkMovedViews(const MapProblem& problem, MapSolution* solution) {
+  for (std::size_t marker_idx = 0; marker_idx < problem.markers.size(); ++marker_idx) {
+    if (solution->shape_from_marker[marker_idx].empty()) continue;
+    std::vector<int> idxs;
+    std::vector<TrackedView> views;
+    for (const int idx : problem.markers[marker_idx].observation_idxs) {
+      const MapObservation& observation = problem.Observation(idx);
+      if (!solution->Pose(observation.frame_idx)) continue;
+      idxs.push_back(idx);
+      views.push_back({CornerErrorsPx(problem, *solution, observation), observation.side_px,
+                       !solution->IsInlier(idx)});
+    }
+    const std::vector<bool> is_moved = FindMovedViews(views);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (is_moved[i]) solution->is_inlier[static_cast<std::size_t>(idxs[i])] = 1;
+    }
+  }
+}
+
 bool IsSuspicious(const MapNoise& noise) {
   // The errors of a right shape are within twice the noise of the corners, lens and cloth included.
   constexpr double kRatio = 4.0, kNegligiblePx = 0.25;
@@ -207,10 +226,10 @@ std::string OutlierReason(const MapProblem& problem, const MapSolution& solution
   std::string corners;
   int num_off = 0;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
-    if (errors_px[i] <= corner_tolerance_px) continue;
+    if (errors_px[i].norm() <= corner_tolerance_px) continue;
     ++num_off;
     corners += (corners.empty() ? "corner " : ", ") + std::to_string(i + 1) + " off by " +
-               Px(errors_px[i]);
+               Px(errors_px[i].norm());
   }
   if (num_off > 0 && num_off < kNumCorners) return corners;
   return Px(ReprojectionError(problem, solution, observation)) + " from its place";

@@ -40,6 +40,10 @@ double FinalTolerance(const MapObservation& observation, const MapNoise& noise);
 
 void MarkFinalInliers(const MapProblem& problem, const MapNoise& noise, MapSolution* solution);
 
+// Marks also the views of a video as inliers that are outliers only because the surface moved
+// (moved_views.h).
+void MarkMovedViews(const MapProblem& problem, MapSolution* solution);
+
 // Whether the errors are larger than the noise of the corners explains, which indicates a wrong
 // shape.
 bool IsSuspicious(const MapNoise& noise);

@@ -48,8 +48,9 @@ std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem) {
   const std::vector<double> residuals = CornerResiduals(problem);
   std::vector<CornerResidual> corners;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
+    const Eigen::Vector2d in_sigmas(residuals[2 * i], residuals[2 * i + 1]);
     corners.push_back({problem.corners[i].first, problem.corners[i].second,
-                       std::hypot(residuals[2 * i], residuals[2 * i + 1])});
+                       problem.corner_sigmas_px[i] * in_sigmas, in_sigmas.norm()});
   }
   return corners;
 }

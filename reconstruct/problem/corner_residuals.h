@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/problem/marker_problem.h"
 
@@ -14,7 +16,8 @@ namespace velamap {
 struct CornerResidual {
   Point3DId point3D_id = 0;
   TrackElement element;
-  double sigmas = 0.0;  // length of the residual, in calibrated sigmas
+  Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // of the corner from its place
+  double sigmas = 0.0;                                 // its length, in calibrated sigmas
 };
 
 std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);

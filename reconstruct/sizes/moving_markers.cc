@@ -1,14 +1,17 @@
 #include "reconstruct/sizes/moving_markers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "importer/base/natural_order.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/quad.h"
+#include "reconstruct/model/moved_views.h"
 
 namespace velamap {
 namespace {
@@ -34,12 +37,7 @@ std::map<int, MeanResiduals> MeanResidualsByMarker(const MarkerProblem& problem,
     Eigen::Vector2d residuals = Eigen::Vector2d::Zero();
     double num_corners = 0.0;
   };
-  std::vector<const ModelImage*> images;
-  for (const ModelImage& image : model.images) images.push_back(&image);
-  std::sort(images.begin(), images.end(),
-            [](const ModelImage* a, const ModelImage* b) { return NaturalLess(a->name, b->name); });
-  std::map<ImageId, std::size_t> image_idxs;
-  for (std::size_t i = 0; i < images.size(); ++i) image_idxs.emplace(images[i]->image_id, i);
+  const std::map<ImageId, std::size_t> image_idxs = OrderInTime(model);
   const std::vector<double> residuals = CornerResiduals(problem);
   std::map<int, std::map<std::size_t, Sum>> sums;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
@@ -159,6 +157,20 @@ std::vector<const MeanResiduals*> Neighbours(int marker_id, const std::map<int, 
   return neighbours;
 }
 
+TrackedView ViewOf(const std::array<const CornerResidual*, kNumCorners>& corners, double max_sigmas,
+                   const Model& model) {
+  TrackedView view;
+  QuadCorners quad;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const TrackElement& element = corners[i]->element;
+    quad[i] = model.FindImage(element.image_id)->points2D.at(element.point2D_idx).x_in_image_px;
+    view.errors_px[i] = corners[i]->error_px;
+    view.is_outlier = view.is_outlier || corners[i]->sigmas > max_sigmas;
+  }
+  view.side_px = QuadMeanSide(quad);
+  return view;
+}
+
 }  // namespace
 
 std::map<int, double> MotionFactors(const MarkerProblem& problem,
@@ -186,6 +198,39 @@ std::map<int, double> MotionFactors(const MarkerProblem& problem,
     if (factor > kMinFactor) factors.emplace(marker_id, factor);
   }
   return factors;
+}
+
+std::vector<CornerResidual> WithoutMovedViews(const std::vector<CornerResidual>& corners,
+                                              double max_sigmas, const Model& model,
+                                              const CornerMotions& motions) {
+  using Corners = std::array<const CornerResidual*, kNumCorners>;
+  std::map<int, std::map<std::size_t, Corners>> views;  // by marker and time
+  const std::map<ImageId, std::size_t> order = OrderInTime(model);
+  for (const CornerResidual& corner : corners) {
+    if (motions.count(corner.element.image_id) == 0) continue;
+    const CornerId id = CornerFromPoint3DId(corner.point3D_id);
+    views[id.marker_id][order.at(corner.element.image_id)]
+         [static_cast<std::size_t>(id.corner) - 1] = &corner;
+  }
+  std::set<const CornerResidual*> moved;
+  for (const auto& [marker_id, by_time] : views) {
+    std::vector<Corners> whole;
+    std::vector<TrackedView> of_marker;
+    for (const auto& [time, of_view] : by_time) {
+      if (std::count(of_view.begin(), of_view.end(), nullptr) > 0) continue;
+      whole.push_back(of_view);
+      of_marker.push_back(ViewOf(of_view, max_sigmas, model));
+    }
+    const std::vector<bool> is_moved = FindMovedViews(of_marker);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      if (is_moved[i]) moved.insert(whole[i].begin(), whole[i].end());
+    }
+  }
+  std::vector<CornerResidual> others;
+  for (const CornerResidual& corner : corners) {
+    if (moved.count(&corner) == 0) others.push_back(corner);
+  }
+  return others;
 }
 
 }  // namespace velamap

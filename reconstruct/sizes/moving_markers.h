@@ -3,9 +3,12 @@
 #pragma once
 
 #include <map>
+#include <vector>
 
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_residuals.h"
 #include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/registration/corner_motions.h"
 
 namespace velamap {
 
@@ -20,5 +23,11 @@ namespace velamap {
 // order of the images' names is that of time.
 std::map<int, double> MotionFactors(const MarkerProblem& problem,
                                     const std::map<int, double>& present, const Model& model);
+
+// Leaves out the corners of views with corners beyond `max_sigmas` that are there only because the
+// surface moved (moved_views.h). `motions` tells which images are frames of a video.
+std::vector<CornerResidual> WithoutMovedViews(const std::vector<CornerResidual>& corners,
+                                              double max_sigmas, const Model& model,
+                                              const CornerMotions& motions);
 
 }  // namespace velamap

@@ -5,6 +5,7 @@ velamap_test(NAME reconstruct_model_test LABEL unit
     model/gauge_test.cc
     model/model_io_test.cc
     model/model_test.cc
+    model/moved_views_test.cc
     colmap/observation_filter_test.cc
     model/reprojection_test.cc
     sheet_model.cc

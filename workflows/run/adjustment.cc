@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "importer/base/log.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/run/camera_checks.h"
@@ -37,21 +39,25 @@ void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
              removed_images.size());
 }
 
-AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
-                                  const std::string& log_path, Model* model) {
+BundleAdjustmentSummary RunColmapBackend(const BundleAdjustmentOptions& options,
+                                         const std::string& log_path, Model* model) {
   LogInfo("bundle adjustment of {} images and {} points by {}", model->images.size(),
           model->points3D.size(), options.colmap_path);
-  const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
+  BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
   LogInfo("rounds: {}, outliers removed: {}, mean reprojection error {:.3f} -> {:.3f} px",
           summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
           summary.error_after_px.mean);
   WarnOfRemovedImages(summary.removed_images);
-  return {summary.error_before_px,
-          summary.error_after_px,
-          static_cast<int>(summary.removed.size()),
-          std::nullopt,
-          {},
-          {}};
+  return summary;
+}
+
+// Returns how many of the observations could not be returned to the model.
+int RestoreAll(const std::vector<RemovedObservation>& removed, Model* model) {
+  constexpr double kAnyError = std::numeric_limits<double>::infinity();
+  return static_cast<int>(
+      std::count_if(removed.begin(), removed.end(), [&](const RemovedObservation& observation) {
+        return !RestoreObservation(observation, kAnyError, model);
+      }));
 }
 
 void LogMarkersSummary(const MarkerAdjustmentSummary& summary) {
@@ -165,7 +171,12 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
       colmap.refine_focal_length = colmap.refine_principal_point = colmap.refine_extra_params =
           false;
     }
-    result = RunColmapBackend(colmap, log_path, model);
+    const BundleAdjustmentSummary summary = RunColmapBackend(colmap, log_path, model);
+    result.error_before_px = summary.error_before_px;
+    result.error_after_px = summary.error_after_px;
+    // The marker-aware adjustment judges all corners anew: it knows their sigmas and what moves.
+    result.num_removed = options.UsesMarkers() ? RestoreAll(summary.removed, model)
+                                               : static_cast<int>(summary.removed.size());
   }
   if (options.UsesMarkers()) {
     const Statistics before_px = result.error_before_px;

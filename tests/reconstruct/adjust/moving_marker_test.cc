@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/geometry/alignment.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/correlation/error_correlation.h"
 #include "reconstruct/sizes/size_deviations.h"
@@ -92,6 +93,22 @@ CentreError CentreErrorOf(int marker_id, const SyntheticScene& scene, const Mode
   return {error_m.norm(), std::sqrt(variance)};
 }
 
+// RMS distance of the points from the truth after a rigid alignment, m.
+double ShapeError(const SyntheticScene& scene, const Model& model) {
+  std::vector<Eigen::Vector3d> found, truth;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const CornerId id = CornerFromPoint3DId(point3D_id);
+    found.push_back(point.x_in_world);
+    truth.push_back(scene.x_in_world.at(id.marker_id)[static_cast<std::size_t>(id.corner)]);
+  }
+  const Rigid3 truth_from_found = EstimateRigid3(found, truth);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    squares += (truth_from_found * found[i] - truth[i]).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(found.size()));
+}
+
 // Begins where the marker is at one end of its motion, as a registration may leave it that takes
 // the other images for outliers.
 TEST(MovingMarker, HasItsMeanPlaceAndASigmaThatContainsTheMotion) {
@@ -130,6 +147,45 @@ TEST(MovingMarker, OfFewFramesHasASigmaThatContainsTheMotionOfItsNeighbours) {
     EXPECT_LT(found.error_m, 3 * found.sigma_m) << "marker " << marker_id;
     EXPECT_LT(found.sigma_m, 2 * kFlap_m) << "marker " << marker_id;
   }
+}
+
+// A wave runs along the sail: every marker moves, and none more than the others.
+SyntheticScene WavingSail() {
+  SyntheticScene scene = StillSail();
+  const auto& first = scene.x_in_world.begin()->second;
+  const Eigen::Vector3d normal = (first[1] - first[3]).cross(first[2] - first[4]).normalized();
+  const Eigen::Vector3d along = (first[2] - first[1]).normalized();
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    for (MarkerDetection& marker : scene.frames[i].markers) {
+      const auto& x_in_world = scene.x_in_world.at(marker.marker_id);
+      for (std::size_t corner = 0; corner < kNumCorners; ++corner) {
+        const Eigen::Vector3d& x = x_in_world[corner + 1];
+        const double phase = 2 * M_PI * (static_cast<double>(i) / 11 - along.dot(x) / 1.5);
+        marker.corners_in_image_px[corner] = *ImageFromCam(
+            scene.camera, scene.cam_from_world[i] * (x + 0.5 * kFlap_m * std::sin(phase) * normal));
+      }
+    }
+  }
+  AddNoise({0.1, 0, 0, 0, 3}, &scene);
+  return scene;
+}
+
+TEST(MovingMarker, AWholeSailThatFlapsKeepsItsViews) {
+  const SyntheticScene scene = WavingSail();
+  CornerErrors frames_of_video;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    frames_of_video.motions[static_cast<ImageId>(i + 1)] =
+        std::vector<CornerMotion>(kNumCorners * scene.frames[i].markers.size());
+  }
+  MarkerAdjustmentOptions options;
+  options.estimate_rolling_shutter = false;
+  Model model = MakeSceneModel(scene);
+  std::size_t num_corners = 0;
+  for (const auto& [point3D_id, point] : model.points3D) num_corners += point.track.size();
+  const MarkerAdjustmentSummary summary =
+      AdjustWithMarkers(options, scene.layout, frames_of_video, &model);
+  EXPECT_LT(summary.removed.size(), 0.01 * static_cast<double>(num_corners));
+  EXPECT_LT(ShapeError(scene, model), 0.075 * kFlap_m);
 }
 
 double SizeCorrelationFactorOf(const SyntheticScene& scene) {
