@@ -1,6 +1,7 @@
 #include "exporters/report/report_key_numbers.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,9 @@ namespace {
 // shapes that nevertheless register 0.8 px and more. Prints and corners are accurate to about 1 %
 // of an area; the area of a bent or misread marker is wrong by several percent.
 constexpr double kGoodError_px = 0.5, kBadError_px = 0.8;
+// Blur, compression and bent prints make the errors up to three times as large as the noise of the
+// corners. If they are larger, something moved that the model takes to be at rest.
+constexpr double kGoodNoiseFactor = 4.0;
 constexpr double kGoodAreaError_percent = 2, kBadAreaError_percent = 5;
 constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
 // The codes that a wrong dictionary finds do not fit together, but some do by chance.
@@ -65,15 +69,20 @@ KeyNumber ImagesNumber(const ReportInput& input) {
           ReportStatus::kNone};
 }
 
-KeyNumber ErrorNumber(const Statistics& error_px) {
+KeyNumber ErrorNumber(const Statistics& error_px, const AdjustmentUncertainty* uncertainty) {
+  const double factor = uncertainty != nullptr ? std::sqrt(uncertainty->variance_factor) : 0.0;
+  const bool is_unexplained = factor > kGoodNoiseFactor;
   return {KeyNumberKind::kReprojectionError,
-          fmt::format("{:.3f} px mean, {:.2f} px at most", error_px.mean, error_px.max),
+          fmt::format(
+              "{:.3f} px mean, {:.2f} px at most{}", error_px.mean, error_px.max,
+              is_unexplained ? fmt::format(", {:.1f} times the noise of the corners", factor) : ""),
           fmt::format("distance between detected and projected corners; good up to a mean of {:g} "
-                      "px, above {:g} px the shape may be wrong",
-                      kGoodError_px, kBadError_px),
-          LowIsGood(error_px.mean, kGoodError_px, kBadError_px),
+                      "px and {:g} times their noise, above {:g} px the shape may be wrong",
+                      kGoodError_px, kGoodNoiseFactor, kBadError_px),
+          std::max(LowIsGood(error_px.mean, kGoodError_px, kBadError_px),
+                   is_unexplained ? ReportStatus::kCheck : ReportStatus::kGood),
           "check that the calibration belongs to these images, that the layout is that of the "
-          "surface, and that the surface kept its shape"};
+          "surface, that the surface kept its shape, and that no engine shook the camera"};
 }
 
 KeyNumber AreaNumber(const ShapeMetrics& metrics) {
@@ -113,7 +122,9 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   };
   add(MarkersNumber(input.metrics));
   add(ImagesNumber(input));
-  if (input.model_metrics.error_px.count > 0) add(ErrorNumber(input.model_metrics.error_px));
+  if (input.model_metrics.error_px.count > 0) {
+    add(ErrorNumber(input.model_metrics.error_px, input.uncertainty));
+  }
   if (input.metrics.area_error_percent.count > 0) add(AreaNumber(input.metrics));
   add(DictionaryNumber(input));
   add(CalibrationNumber(input));

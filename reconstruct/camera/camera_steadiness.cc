@@ -84,12 +84,16 @@ std::optional<ImageIntrinsics> IntrinsicsOf(const Model& model, const ModelImage
   problem.Evaluate(own, true, &equations);
   const Eigen::FullPivLU<OwnCameraProblem::Equations::Matrix> lu(equations.hessian());
   if (!lu.isInvertible()) return std::nullopt;
+  constexpr double kTiny = 1e-30;  // of exact corners
+  const Eigen::Matrix3d covariance = lu.inverse().bottomRightCorner<3, 3>();
+  const double explained = 0.5 * own.change.dot(covariance.inverse() * own.change);
   const double redundancy = 2.0 * static_cast<double>(points.size()) - kNumUnknowns;
   const double variance = 2.0 * equations.cost() / redundancy;
-  const Eigen::Vector3d sigmas =
-      (variance * lu.inverse().diagonal().tail<3>()).cwiseMax(0.0).cwiseSqrt();
-  return ImageIntrinsics{image.image_id, own.change.x(), sigmas.x(), own.change.tail<2>(),
-                         sigmas.tail<2>()};
+  const Eigen::Vector3d sigmas = (variance * covariance.diagonal()).cwiseMax(0.0).cwiseSqrt();
+  return ImageIntrinsics{
+      image.image_id,   own.change.x(),
+      sigmas.x(),       own.change.tail<2>(),
+      sigmas.tail<2>(), explained / std::max(explained + equations.cost(), kTiny)};
 }
 
 // A typical residual of the model, px.
@@ -206,9 +210,12 @@ std::optional<FocalStep> FindGroups(const Model& model,
 
 std::optional<PrincipalPointWander> FindWander(const Model& model,
                                                const std::vector<ImageIntrinsics>& values) {
-  constexpr double kMinSpread = 4e-3, kMinRatio = 4.0;
+  constexpr double kMinSpread = 4e-3, kMinRatio = 4.0, kMinShare = 0.5;
   constexpr std::size_t kMinImages = 8;
   if (values.size() < kMinImages) return std::nullopt;
+  std::vector<double> shares;
+  for (const ImageIntrinsics& value : values) shares.push_back(value.explained_share);
+  if (Median(std::move(shares)) < kMinShare) return std::nullopt;
   const Camera& camera = model.cameras.at(model.FindImage(values.front().image_id)->camera_id);
   const double least_px = kMinSpread * LargerSide(camera);
   std::optional<PrincipalPointWander> wander;
